@@ -5,7 +5,7 @@ export const MOST_IMPACTS = 100_000;
 
 /** A refusal by the server, with the fields it blames. */
 export class Problem extends Error {
-  /** @param {string} title @param {string} detail @param {import('contract').ProblemError[]} errors @param {number} status */
+  /** @param {string} title @param {string} detail @param {ProblemError[]} errors @param {number} status */
   constructor(title, detail, errors, status) {
     super(detail || title);
     this.title = title;

@@ -1,8 +1,5 @@
 // The fields of a scene: their table, and their values by dotted path.
 
-/** @typedef {Record<string, any>} Scene nested as in the contract, as far as it is set */
-/** @typedef {import('contract').Field} Field */
-
 /** Compares two values of a field, vertices included. @param {unknown} one @param {unknown} other */
 export const same = (one, other) => one === other || (Array.isArray(one) && String(one) === String(other));
 

@@ -2,9 +2,6 @@
 
 import { playedAt, same } from './scene-fields.js';
 
-/** @import { Field, Scene } from './scene-fields.js' */
-/** @import { Preset as Case } from 'contract' */
-
 /** A preset with changes laid over it; a body of another kind replaces the preset's whole. @param {Scene} preset @param {Scene} changes @returns {Scene} */
 export function merged(preset, changes) {
   const base = structuredClone(preset);

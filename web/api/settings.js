@@ -4,7 +4,6 @@ import { number, quantity } from '../dom/numbers.js';
 import { parse, read } from '../dom/typed-number.js';
 import { shownValue } from '../dom/units.js';
 
-/** @import { Field } from './scene-fields.js' */
 /** A value, or the reason why a text is none. @typedef {{value?: unknown, problem?: string}} Reading */
 
 /** The id of the control of a field. @param {Field} field */

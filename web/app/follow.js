@@ -9,8 +9,6 @@ import { debounce } from '../dom/debounce.js';
 import { Verdict } from '../panels/verdict/verdict.js';
 import { recordedRun } from '../timeline/others.js';
 
-/** @typedef {import('./page.js').Page} Page */
-
 /** An edit counts as settled after so long without another, ms. */
 const QUIET_MS = 150;
 /** Bounces of the runs for a fact beside the verdict. */

@@ -6,8 +6,7 @@ import { told } from '../api/settings.js';
 import { TYPED_IN, byId, h, pressedIn } from '../dom/elements.js';
 import { restoreState } from './scenes.js';
 
-/** @typedef {import('./page.js').State} State */
-/** A state, and the edit that came after it: the path of a field, or words. @typedef {{state: State, edit: string}} Entry */
+/** A state, and the edit that came after it: the path of a field, or words. @typedef {{state: PageState, edit: string}} Entry */
 /** A way through the states. @typedef {{name: 'undo' | 'redo', done: string, entries: Entry[]}} Way */
 
 /** Entries kept. */
@@ -17,13 +16,13 @@ const TOGETHER_MS = 800;
 /** The words on what was undone stay so long, ms. */
 const SAID_MS = 4000;
 
-/** A state as text, without the clock of its run, which no edit changes. @param {State} state */
+/** A state as text, without the clock of its run, which no edit changes. @param {PageState} state */
 function textOf({ scene, chosen, pins, run }) {
   const own = run === null ? null : [...new URLSearchParams(run)].filter(([key]) => !key.startsWith('clock.')).sort();
   return JSON.stringify([scene, chosen?.name, pins, own]);
 }
 
-/** Brings undo and redo: `record` keeps the page as it is before what words tell, `edit` before the edit of a field, once for a drag or for a text. @param {import('./page.js').Page} page */
+/** Brings undo and redo: `record` keeps the page as it is before what words tell, `edit` before the edit of a field, once for a drag or for a text. @param {Page} page */
 export function bringHistory(page) {
   /** @type {Way} */
   const undo = { name: 'undo', done: 'Undone', entries: [] };
@@ -38,7 +37,7 @@ export function bringHistory(page) {
   const said = h('p', { id: 'undone', class: 'undone', role: 'status' });
   const fieldOf = (/** @type {string} */ edit) => page.fields.find(({ field }) => field === edit);
 
-  /** @returns {State} */
+  /** @returns {PageState} */
   const now = () => {
     const { typed = {}, releasedAs, chosen, run, pins } = page;
     const played = run.phase === 'idle' ? null : String(run.query);

@@ -4,10 +4,6 @@ import { setAt, valueAt } from '../api/scene-fields.js';
 import { linked } from '../api/settings.js';
 import { FASTEST, SLOWEST, VELOCITIES, interventionQuery, interventionsOf } from '../run/interventions.js';
 
-/** @typedef {import('../api/scene-fields.js').Field} Field */
-/** @typedef {import('contract').Preset} Case */
-/** @typedef {import('../api/scene-fields.js').Scene} Scene */
-
 /** Keys of a run. */
 const RUN_KEYS = /^(interventions\.\d+\.(impact|(set|kick|catch|throw)\.[\w.]+)|clock\.\d+\.(wall_ms|run|speed)|hold)$/;
 /** Keys of panels. */

@@ -11,19 +11,6 @@ import { Run } from '../run/run.js';
 import { SceneView } from '../scene/scene-view.js';
 import { TypedScene } from '../form/typed-scene.js';
 
-/** @typedef {import('../api/scene-fields.js').Scene} Scene */
-/** @typedef {import('../form/form.js').Form} Form */
-
-/**
- * The page at a moment.
- * @typedef {object} State
- * @property {Scene} scene
- * @property {Scene} releasedAs
- * @property {import('contract').Preset | null} chosen
- * @property {string | null} run the query that replays it
- * @property {string} pins the part of the address of the pinned runs
- */
-
 /** An address of the page. @param {URLSearchParams | null} query */
 const whole = (query) => new URL(query ? `?${query}` : '', location.href).href;
 
@@ -34,9 +21,9 @@ export const GAIN = 'table.tilt_gain';
 export class Page extends TypedScene {
   /** The form of the typed scene. It comes after the first plot. @type {Form | null} */
   form = null;
-  /** @type {import('contract').Preset[]} */
+  /** @type {Case[]} */
   cases = [];
-  /** The case that the scene began with. @type {import('contract').Preset | null} */
+  /** The case that the scene began with. @type {Case | null} */
   chosen = null;
   /** The typed scene when the run began. @type {Scene} */
   releasedAs = {};
@@ -56,7 +43,7 @@ export class Page extends TypedScene {
   opened = () => {};
   /** Marks the critical gain on its track, once that is there. */
   markGain = () => {};
-  /** The newest verdict. @type {import('../panels/card.js').Judged | null} */
+  /** The newest verdict. @type {Judged | null} */
   judged = null;
   /** The case that the address names and that there is not. @type {string | null} */
   unknown = null;
@@ -72,9 +59,9 @@ export class Page extends TypedScene {
   follow = () => {};
   /** The line on the run, once there is a run. @type {import('../panels/verdict/this-run.js').ThisRun | null} */
   thisRun = null;
-  /** Charts of the bounces; they come after the first picture. @type {import('../charts/impacts/plots.js').ImpactPlot[]} */
+  /** Charts of the bounces; they come after the first picture. @type {ImpactPlot[]} */
   plots = [];
-  /** The bounces to come, which may be there before the charts. @type {import('../run/run-state.js').RunState | null} */
+  /** The bounces to come, which may be there before the charts. @type {RunState | null} */
   ahead = null;
   /** Comes with them. @type {import('../charts/eigenvalue-circle.js').EigenvalueCircle | null} */
   circle = null;

@@ -5,8 +5,6 @@ import { byId, h } from '../dom/elements.js';
 import { clearNotice, connectionNotice, notice } from '../dom/notices.js';
 import { inWords } from '../dom/typeset.js';
 
-/** @typedef {import('./page.js').Page} Page */
-
 /** The action of the first button. */
 const ACTION = {
   idle: 'Run',
@@ -109,7 +107,7 @@ async function showThisRun(page) {
   page.verdict?.ended(run.phase === 'ended' ? run.fate : null, fact);
 }
 
-/** The run is refused for good. @param {Page} page @param {import('../api/client.js').Problem} problem */
+/** The run is refused for good. @param {Page} page @param {Problem} problem */
 function refused(page, problem) {
   clearNotice('connection');
   const elsewhere = page.form?.blame(problem.errors) ?? [];
@@ -118,7 +116,7 @@ function refused(page, problem) {
   page.updateAddressSoon();
 }
 
-/** A message to the run is refused: says so at its field, at the deeds or in a notice. @param {Page} page @param {{title: string, detail: string, errors: import('contract').ProblemError[]}} message */
+/** A message to the run is refused: says so at its field, at the deeds or in a notice. @param {Page} page @param {Refusal} message */
 function blame(page, { title, detail, errors }) {
   const { run } = page;
   if (run.guided && page.guidedByPanel) return;

@@ -11,13 +11,10 @@ import { captionOf } from '../play/stories.js';
 import { interventionsOf } from '../run/interventions.js';
 import { readLink } from './link.js';
 
-/** @typedef {import('./page.js').Page} Page */
-/** @typedef {import('./page.js').Scene} Scene */
-
 /** Text without subscripts, for an option or the window's title. @param {string} text */
 export const plain = (text) => text.replaceAll('κ_', 'κ');
 
-/** The case that a scene is, if it is one. @param {Page} page @param {import('./page.js').Scene} scene */
+/** The case that a scene is, if it is one. @param {Page} page @param {Scene} scene */
 const caseOf = ({ cases, fields }, scene) =>
   cases.find((one) => differences(fields, one.scene, scene).length === 0) ?? null;
 
@@ -64,7 +61,7 @@ function bring(page, scene, chosen, words) {
   present(page, scene);
 }
 
-/** Shows a case; runs it where a run was going on. @param {Page} page @param {import('contract').Preset} one */
+/** Shows a case; runs it where a run was going on. @param {Page} page @param {Case} one */
 export function choose(page, one) {
   const going = page.run.phase !== 'idle';
   const { byItself } = page;
@@ -139,7 +136,7 @@ function whenSeen(act) {
   );
 }
 
-/** Brings back an earlier state. A run that goes on is replayed at the place where it is. @param {Page} page @param {import('./page.js').State} state */
+/** Brings back an earlier state. A run that goes on is replayed at the place where it is. @param {Page} page @param {PageState} state */
 export function restoreState(page, { scene, releasedAs, chosen, run: wanted }) {
   const { run } = page;
   const before = run.phase === 'idle' ? null : run.query;

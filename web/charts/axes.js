@@ -3,16 +3,13 @@
 import { number, roundStep } from '../dom/numbers.js';
 import { shownFactor, shownUnit } from '../dom/units.js';
 
-/** @typedef {{low: number, high: number}} Range */
-/** The place of a plot on its canvas, px, and its scales. @typedef {{left: number, top: number, width: number, height: number, x: Range, y: Range}} Frame */
-
-/** @param {Range} range widened @param {number} value */
+/** @param {Interval} range widened @param {number} value */
 export function include(range, value) {
   if (value < range.low) range.low = value;
   if (value > range.high) range.high = value;
 }
 
-/** @param {Range} range @param {number} count */
+/** @param {Interval} range @param {number} count */
 export function ticks({ low, high }, count) {
   const step = roundStep(high - low, count);
   const found = [];
@@ -23,9 +20,9 @@ export function ticks({ low, high }, count) {
 
 /**
  * The round range around what there is, with some room so that it need not grow at once.
- * @param {Range} extent
+ * @param {Interval} extent
  * @param {{symmetric?: boolean, span?: number, from?: number}} [wish] least span; a low end that stays
- * @returns {Range}
+ * @returns {Interval}
  */
 export function roundRange({ low, high }, { symmetric = false, span = 0, from } = {}) {
   if (from !== undefined) {
@@ -51,18 +48,18 @@ export const toX = ({ left, width, x }, value) => left + ((value - x.low) / (x.h
 /** @param {Frame} frame @param {number} value */
 export const toY = ({ top, height, y }, value) => top + height - ((value - y.low) / (y.high - y.low)) * height;
 
-/** Ticks that are round in the unit that is shown, and their numbers. @param {Range} range @param {number} count @param {string} name */
+/** Ticks that are round in the unit that is shown, and their numbers. @param {Interval} range @param {number} count @param {string} name */
 function shownTicks({ low, high }, count, name) {
   const [, unit = null] = /(?: \/ | \()([^()]+)\)?$/.exec(name) ?? [];
   const factor = shownFactor(unit);
   return ticks({ low: low * factor, high: high * factor }, count).map((told) => ({ told, value: told / factor }));
 }
 
-/** @param {import('./surface.js').Surface} surface @param {Frame} frame @param {string} xName with its unit, in SI @param {string} yName */
+/** @param {Surface} surface @param {Frame} frame @param {string} xName with its unit, in SI @param {string} yName */
 export function drawAxes(surface, frame, xName, yName) {
   const { left, top, width, height } = frame;
   const [right, bottom] = [left + width, top + height];
-  /** @type {(value: number) => import('./theme.js').Colour} */
+  /** @type {(value: number) => Colour} */
   const shade = (value) => (value === 0 ? 'line' : 'faint');
   for (const { value, told } of shownTicks(frame.x, Math.max(2, width / 70), xName)) {
     const x = Math.round(toX(frame, value)) + 0.5;

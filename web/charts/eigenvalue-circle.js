@@ -7,8 +7,6 @@ import { html, render } from '../vendor/preact/preact.js';
 import { ticks } from './axes.js';
 import { Figure } from './figure.js';
 
-/** @typedef {import('contract').Stability} Stability */
-
 /** Size of the picture and of a length of 1, px. */
 const [WIDTH, HEIGHT, ONE] = [320, 226, 80];
 /** Largest real part that has its place. */

@@ -3,8 +3,6 @@
 import { h } from '../dom/elements.js';
 import { partsOf, pixel, presenting } from './theme.js';
 
-/** @typedef {import('./surface.js').Surface} Surface */
-/** @typedef {import('./theme.js').Colour} Colour */
 /** @typedef {'plain' | 'selected' | 'receded'} Look */
 
 /** The colours of dots. @type {readonly Colour[]} */
@@ -47,9 +45,9 @@ export function drawDot(surface, series, x, y, look, many) {
 /**
  * All dots of a plot as squares, set pixel by pixel and put on the canvas at once.
  * @param {Surface} surface
- * @param {import('./axes.js').Frame} frame
- * @param {import('../run/impacts.js').Impacts} impacts
- * @param {import('../run/impacts.js').Lasting[]} columns of the values along x and y
+ * @param {Frame} frame
+ * @param {Impacts} impacts
+ * @param {Lasting[]} columns of the values along x and y
  * @param {import('../run/selection.js').Selection | null} selection
  */
 export function drawPixels({ context, canvas, width, height }, frame, impacts, columns, selection) {

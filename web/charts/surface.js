@@ -2,7 +2,6 @@
 
 import { SANS, SERIF, colourOf, onThemeChange } from './theme.js';
 
-/** @typedef {import('./theme.js').Colour} Colour */
 /** Width and dashes in px. @typedef {{width?: number, dashes?: number[], cap?: CanvasLineCap}} LineLook */
 /** Size in px; italic as the name of a quantity. @typedef {{size?: number, italic?: boolean}} Font */
 /** @typedef {Font & {colour: Colour, align?: CanvasTextAlign, baseline?: CanvasTextBaseline, widest?: number}} TextLook */

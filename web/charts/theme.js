@@ -2,12 +2,6 @@
 
 import { UNITS } from '../dom/units.js';
 
-/**
- * A colour of the style sheet by its name there, or white.
- * @typedef {'ink' | 'muted' | 'line' | 'faint' | 'surface' | 'accent' | 'strike' | 'good' | 'caution' | 'survives' | 'falls' | 'rests'
- *   | 'series-0' | 'series-1' | 'series-2' | 'series-3' | 'measured' | 'white'} Colour
- */
-
 /** @type {Map<string, string>} */
 const colours = new Map();
 /** @type {Set<() => void>} */

@@ -2,17 +2,6 @@
 
 import { placeIn } from '../charts/surface.js';
 
-/** @typedef {{x: number, y: number}} Place px from the corner of a box */
-
-/**
- * @typedef {object} Drag
- * @property {(place: Place, event: PointerEvent) => boolean | void} press true where a drag or a click may begin
- * @property {(place: Place, from: Place, begins: boolean) => void} drag on from where it was pressed
- * @property {(from: Place, dragged: boolean, event: PointerEvent) => void} [release] after a drag or a click
- * @property {(dragged: boolean) => void} [cancel] the browser has taken the pointer, as it does where a finger scrolls
- * @property {(place: Place, event: PointerEvent) => void} [hover] without a press
- */
-
 /**
  * @param {HTMLElement} element
  * @param {HTMLElement} box of the places

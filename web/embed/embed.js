@@ -18,13 +18,10 @@ import { card } from '../panels/card.js';
 import { ScenePage, begin, sceneOf } from '../panels/scene-page.js';
 import { RIG_PANELS } from '../rig/panels.js';
 
-/** @import { ImpactPlot } from '../charts/impacts/plots.js' */
-/** @import { Field } from '../api/scene-fields.js' */
-
 const id = location.pathname.split('/').at(-1) ?? '';
 const main = byId('main');
 
-/** A scene of an address with its fields and cases. @typedef {ReturnType<typeof sceneOf> & {fields: Field[], cases: import('contract').Preset[]}} Place */
+/** A scene of an address with its fields and cases. @typedef {ReturnType<typeof sceneOf> & {fields: Field[], cases: Case[]}} Place */
 /** A view of a run with its element, and what empties it for a new run. @typedef {{element: HTMLElement, view: SceneView | ImpactPlot, clear: () => void}} Shown */
 
 /** The views of a run. @type {Record<string, (run: Run) => Shown>} */
@@ -93,13 +90,13 @@ async function eigenvalues({ query }) {
   circle.show(await get(`v1/stability?${query}`));
 }
 
-/** @param {import('../panels/card.js').Entry} entry @param {Place} place */
+/** @param {Entry} entry @param {Place} place */
 function panel(entry, { fields, cases, query }) {
   const page = new ScenePage('', [entry.id], fields, cases);
   page.read(location.search);
   // Another scene opens in the whole page beside it, and a dashboard has nobody to press a button.
   const beside = (/** @type {URLSearchParams} */ other) => void open(`${whole}?${other}`, '_blank', 'noopener');
-  /** @type {Partial<import('../panels/settings.js').Page> & {keep: () => void}} */
+  /** @type {Partial<PanelPage> & {keep: () => void}} */
   const own = {
     unattended: true,
     keep: () => {},

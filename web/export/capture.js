@@ -5,9 +5,7 @@ import { colourOf } from '../charts/theme.js';
 import { h } from '../dom/elements.js';
 import { svgRecorder } from './svg-recorder.js';
 
-/** @typedef {import('../charts/surface.js').CanvasView} Layered */
-
-/** @param {Layered} view @param {string} title */
+/** @param {CanvasView} view @param {string} title */
 function svgOf(view, title) {
   const { layers } = view;
   const kept = layers.map(({ context }) => context);
@@ -35,7 +33,7 @@ function svgOf(view, title) {
   return new Blob([parts.join('\n')], { type: 'image/svg+xml' });
 }
 
-/** @param {Layered} view @returns {Promise<Blob>} */
+/** @param {CanvasView} view @returns {Promise<Blob>} */
 function pngOf({ layers }) {
   const { width, height } = layers[0].canvas;
   const sheet = h('canvas', { width, height });
@@ -48,7 +46,7 @@ function pngOf({ layers }) {
   );
 }
 
-/** Saves what a view shows. @param {Layered} view @param {string} title @param {string} name of the file, whose end is its format */
+/** Saves what a view shows. @param {CanvasView} view @param {string} title @param {string} name of the file, whose end is its format */
 export const savePicture = async (view, title, name) =>
   download(name.endsWith('.svg') ? svgOf(view, title) : await pngOf(view), name);
 

@@ -26,7 +26,7 @@ let busy = false;
 
 /**
  * Records the view from now on and saves the clip.
- * @param {import('./capture.js').Layered} view
+ * @param {CanvasView} view
  * @param {HTMLElement} head where the progress is shown
  * @param {() => string} words the verdict
  */
@@ -45,7 +45,7 @@ export async function saveClip({ layers }, head, words) {
   }
 }
 
-/** @param {import('../charts/surface.js').Surface[]} layers @param {HTMLElement} head @param {() => string} words */
+/** @param {Surface[]} layers @param {HTMLElement} head @param {() => string} words */
 async function record(layers, head, words) {
   const [type, extension] = KINDS.find(([type]) => MediaRecorder.isTypeSupported(type)) ?? ['', 'webm'];
   const { canvas } = layers[0];

@@ -4,8 +4,6 @@ import { h } from '../dom/elements.js';
 import { html, render } from '../vendor/preact/preact.js';
 import { SaveActions } from './save-actions.js';
 
-/** @typedef {import('./save-actions.js').Saves} Saves */
-
 /** @param {HTMLElement} card @param {string} title @param {Saves | null} saves */
 function enlarge(card, title, saves) {
   if (card.closest('dialog')) return;

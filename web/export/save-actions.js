@@ -4,16 +4,6 @@ import { escaped } from '../charts/svg.js';
 import { copy } from '../dom/clipboard.js';
 import { html } from '../vendor/preact/preact.js';
 
-/** @typedef {import('./capture.js').Layered} Layered */
-/**
- * @typedef {object} Saves
- * @property {string} id of the panel
- * @property {string} title
- * @property {string | null} path the call that gives its numbers, from where the page is; null where there are none yet
- * @property {string[]} formats that the server has for them
- * @property {Layered} [view] where the page draws it
- */
-
 /** Text in quotes that a shell does not read. @param {string} text */
 const quoted = (text) => `'${text.replaceAll("'", "'\\''")}'`;
 

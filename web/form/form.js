@@ -15,8 +15,6 @@ import { html, render, useLayoutEffect, useMemo, useRef, useState } from '../ven
 import { firstValue, shownRange, sliderStep, steady } from './sliders.js';
 import { TypedScene } from './typed-scene.js';
 
-/** @import { Field, Scene } from '../api/scene-fields.js' */
-
 /** The fields that come first and never fold. */
 const FIRST = ['table.tilt_gain', 'release.theta', 'contact.restitution', 'contact.friction', 'noise.timing_sd'];
 
@@ -290,7 +288,7 @@ export class Form {
     this.#render();
   }
 
-  /** The server's errors beside their fields. @param {import('contract').ProblemError[]} errors @returns {string[]} those that belong to no field here */
+  /** The server's errors beside their fields. @param {ProblemError[]} errors @returns {string[]} those that belong to no field here */
   blame(errors) {
     const { fields } = this.typed;
     for (const [path, { wrong }] of this.#said)

@@ -2,8 +2,6 @@
 
 import { shownFactor, shownValue } from '../dom/units.js';
 
-/** @import { Field } from '../api/scene-fields.js' */
-
 // The first range of a slider. The fields' own ranges are too wide to aim in; a typed value widens the slider.
 /** @type {Record<string, [number, number]>} */
 const COMFORTABLE = {

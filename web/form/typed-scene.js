@@ -2,8 +2,6 @@
 
 import { same, setAt, valueAt } from '../api/scene-fields.js';
 
-/** @import { Field, Scene } from '../api/scene-fields.js' */
-
 const LENGTHS = ['body.contact_distance', 'body.radius_of_gyration'];
 
 export class TypedScene {

@@ -14,16 +14,6 @@ export const QUIET_MS = 300;
 /** Time after which a server that did not answer is asked again, ms. */
 const AGAIN_MS = 3000;
 
-/**
- * @template A
- * @typedef {object} Answer
- * @property {A | null} answer the newest; null before the first
- * @property {string | null} of the path that it answers
- * @property {boolean} current it answers what is asked now
- * @property {Problem | null} problem of what is asked now
- * @property {string} lost words on a server that does not answer; '' for one that does
- */
-
 /** @typedef {{answer: any, of: string | null, problem: Problem | null, lost: string}} State */
 
 /** @param {(change: (before: State) => State) => void} set @param {number} quiet_ms @param {(path: string) => Promise<any>} ask */

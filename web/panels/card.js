@@ -6,19 +6,6 @@ import { STUDY_SHEETS, styles } from '../dom/styles.js';
 import { enlarger } from '../export/enlarge.js';
 import { html, render, useEffect, useState } from '../vendor/preact/preact.js';
 
-/** A verdict and the scene it is of. @typedef {{answer: import('contract').Stability, scene: URLSearchParams}} Judged */
-
-/**
- * @typedef {object} Entry
- * @property {string} id also the beginning of its parts of the address, and its name under `embed/`
- * @property {string} title
- * @property {string} about
- * @property {boolean} [fills] it fills its place as it is, and is not opened large
- * @property {string} [kind] class of its card
- * @property {string[]} [sheets] its style sheets, where they are not those of a study
- * @property {() => Promise<(props: any) => unknown>} load its component, which takes the page
- */
-
 /** A panel of the workbench: the tab in which it stands. @typedef {Entry & {tab: string}} Study */
 
 /**
@@ -54,7 +41,7 @@ export function card(entry) {
   if (!fills) element.firstElementChild?.append(enlarger(element, title));
   return {
     element,
-    draw: (/** @type {import('./settings.js').Page} */ page, more = {}) =>
+    draw: (/** @type {PanelPage} */ page, more = {}) =>
       render(html`<${Panel} entry=${entry} page=${page} ...${more} />`, body),
   };
 }

@@ -8,8 +8,6 @@ import { SaveActions } from '../export/save-actions.js';
 import { html, useEffect, useLayoutEffect, useMemo, useRef, useState } from '../vendor/preact/preact.js';
 import { Row, Table } from './parts.js';
 
-/** @import { Readable } from '../charts/readable/chart-reader.js' */
-
 /** An answer with its picture. @param {string} path @param {AbortSignal} [signal] @returns {Promise<[any, SVGSVGElement]>} */
 export const pictured = (path, signal) => Promise.all([get(path, signal), serverFigure(`${path}&format=svg`, signal)]);
 
@@ -78,7 +76,7 @@ export function Picture({ figure, read, ...about }) {
   return html`<${Chart} ...${about} kind="figure-box" draw=${() => readable} inputs=${[figure]} />`;
 }
 
-/** @typedef {import('contract').Trajectory['demand']} Demand */
+/** @typedef {Trajectory['demand']} Demand */
 
 /** @type {[name: keyof Demand, title: string, unit: string][]} */
 const QUANTITIES = [

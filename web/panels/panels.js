@@ -5,8 +5,6 @@ import { Tabs } from '../play/tabs.js';
 import { card } from './card.js';
 import { Parts } from './settings.js';
 
-/** @import { Page } from './settings.js' */
-
 /** The tabs in their order; the first is open unless the address says another. @type {readonly import('../play/tabs.js').Tab[]} */
 const TABS = [
   { id: 'map', name: 'Map' },
@@ -46,14 +44,6 @@ export const PANELS = [
   },
 ];
 
-/**
- * A part of the page with a place of its own that takes its part of the address, or hears of the scene.
- * @typedef {object} Neighbour
- * @property {() => void} [sceneChanged]
- * @property {() => URLSearchParams} [query] its part of the address
- * @property {(link: URLSearchParams) => string[]} [restore] from that part; what was dropped of it, in words
- */
-
 /** The panel that a part of the address belongs to. @param {string} key */
 const ownerOf = (key) => key.split('.')[0];
 
@@ -68,7 +58,7 @@ export class Panels {
   /**
    * @param {HTMLElement} list of the tabs
    * @param {HTMLElement} panels
-   * @param {() => Pick<Page, 'fields' | 'query' | 'scene' | 'take' | 'launch' | 'dropWith' | 'guide'>} page
+   * @param {() => Pick<PanelPage, 'fields' | 'query' | 'scene' | 'take' | 'launch' | 'dropWith' | 'guide'>} page
    * @param {() => void} changed the address is another one
    * @param {(id: string, what: string[]) => void} dropped parts of a link that a panel could not keep
    */

@@ -50,7 +50,6 @@ export const sign = (text) => child(symbol(text));
 /** Signs of results, which show them without colour; the last ones are of a run. */
 const SIGNS = { stable: '●', beyond: '◆', unstable: '▲', none: '–', kept: '●', fell: '▲', played: '●' };
 /** @typedef {keyof typeof SIGNS} Tone */
-/** A result in a line. @typedef {{tone: Tone, words: string} | null} Result */
 
 /** A result in its tone. @param {{result: NonNullable<Result>, tag?: string, kind?: string}} props */
 export const Told = ({ result: { tone, words: said }, tag = 'span', kind = '' }) =>

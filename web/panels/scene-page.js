@@ -11,9 +11,6 @@ import { html } from '../vendor/preact/preact.js';
 import { Choice, useChanges } from './parts.js';
 import { Parts } from './settings.js';
 
-/** @import { Field, Scene } from '../api/scene-fields.js' */
-/** @import { Preset as Case } from 'contract' */
-
 /** Makes a page of the fields of a scene and the cases; one that fails can be asked for again. @param {(fields: Field[], cases: Case[]) => unknown} make */
 export async function begin(make) {
   try {

@@ -5,55 +5,6 @@ import { inWords } from '../dom/typeset.js';
 import { html, useEffect } from '../vendor/preact/preact.js';
 import { Choice, NumberField } from './parts.js';
 
-/** @import { Field, Scene } from '../api/scene-fields.js' */
-/** @import { ProblemError } from 'contract' */
-
-/**
- * The page around a panel, as far as the panel knows it.
- * @typedef {object} Page
- * @property {Field[]} fields
- * @property {URLSearchParams | null} query the scene; null while some of it is no value
- * @property {Scene} scene as far as it goes
- * @property {URLSearchParams} link parts of the address that belong to panels
- * @property {(changes: Record<string, string | null>) => void} part changes such parts; null takes one away
- * @property {(id: string, broken: Broken) => void} drop takes broken parts away, and tells of them
- * @property {(scene: Scene) => void} take shows another scene
- * @property {boolean} [unattended] nobody is there to press a button
- * @property {(id: string, link: URLSearchParams) => void} [open] another panel, with this as its part of the address
- * @property {(values: Record<string, number>) => void} [launch] releases the scene with these values in it
- * @property {(values: Record<string, number>, first: boolean) => void} [dropWith] drops the scene with these values, at the first turn of a drag and at others
- * @property {Guide} [guide]
- */
-
-/** Parts of an address that are wrong, with words on each, and what of them is right. @typedef {[part: string, words: string, right?: string][]} Broken */
-
-/**
- * The table under a run that is under way: what it does on request.
- * @typedef {object} Guide
- * @property {() => boolean} live there is such a run
- * @property {() => boolean} held the table holds its body
- * @property {() => number} length from the contact point to the centre of gravity, m
- * @property {(watcher: {changed: () => void, problem: (told: {title: string, detail: string, errors: ProblemError[]}) => void}) => void} watch
- * @property {(settings: Record<string, string | number>) => void} catchIt
- * @property {(apex: {height: number, theta: number}) => void} throwIt
- * @property {(heights: number[]) => void} juggle
- */
-
-/**
- * A setting, by its name in the request.
- * @typedef {object} Setting
- * @property {string} [key] its part of the address behind the panel's, where that is not its name
- * @property {unknown} label
- * @property {number | string} [usual] a field without one may be left empty
- * @property {string} [unit] in which it is typed
- * @property {number} [scale] typed units in one of the address
- * @property {Record<string, string>} [choices] with their words
- * @property {(value: number) => boolean} [right]
- * @property {boolean} [open] may be left empty though it has a usual value
- * @property {boolean} [disabled]
- * @property {string} [must] it must be, in words
- */
-
 /** A whole number from 1. @param {string} label @param {number} usual @param {number} most @param {string} [key] @returns {Setting} */
 export const whole = (label, usual, most, key) => ({
   label,
@@ -104,7 +55,7 @@ export class Parts extends EventTarget {
   /** Hears of broken parts, in words. @param {string} _id of the panel @param {string[]} _words */
   dropped(_id, _words) {}
 
-  /** @type {Page['part']} */
+  /** @type {PanelPage['part']} */
   part = (changes) => {
     const link = new URLSearchParams(this.link);
     for (const [part, value] of Object.entries(changes)) {
@@ -115,7 +66,7 @@ export class Parts extends EventTarget {
     this.changed();
   };
 
-  /** @type {Page['drop']} */
+  /** @type {PanelPage['drop']} */
   drop = (id, broken) => {
     this.dropped(id, broken.map(([, words]) => words).filter(Boolean));
     this.part(Object.fromEntries(broken.map(([part, , right = null]) => [part, right])));
@@ -138,11 +89,11 @@ export const faultOf = (errors, name) => wordsOf(within(errors, name));
 export const otherFaults = (errors, names) =>
   wordsOf(errors.filter((error) => !names.some((name) => within([error], name).length > 0)));
 
-/** The server's words on a refusal, but for those that stand beside fields. @param {import('../api/client.js').Problem} problem @param {string[]} names of the fields */
+/** The server's words on a refusal, but for those that stand beside fields. @param {Problem} problem @param {string[]} names of the fields */
 export const refusalOf = ({ errors, message }, names) =>
   errors.length === 0 ? message : otherFaults(errors, names) || 'A setting is out of its range; it is marked.';
 
-/** Takes broken parts of the address away. @param {Page} page @param {string} id of the panel @param {Broken} broken */
+/** Takes broken parts of the address away. @param {PanelPage} page @param {string} id of the panel @param {Broken} broken */
 export const useWhole = (page, id, broken) =>
   useEffect(() => {
     // A page that draws at once may not do so within an effect.
@@ -155,7 +106,7 @@ const scaled = (value, factor) =>
 
 /**
  * The controls of settings, and the same with their labels.
- * @param {Page} page
+ * @param {PanelPage} page
  * @param {string} id of the panel
  * @param {Record<string, Setting>} settings
  * @param {Record<string, any>} values
@@ -182,7 +133,7 @@ export function controlsOf(page, id, settings, values, errors = []) {
 
 /**
  * The settings of a panel from the address, and their fields.
- * @param {Page} page
+ * @param {PanelPage} page
  * @param {string} id of the panel
  * @param {Record<string, Setting>} settings
  * @param {ProblemError[]} [errors] of the server on the request

@@ -1,6 +1,6 @@
 // The chapters of the paper's page, in their order. Each can stand alone under `embed/`.
 
-/** @type {import('../panels/card.js').Entry[]} */
+/** @type {Entry[]} */
 export const CHAPTERS = [
   {
     id: 'reading',

@@ -8,7 +8,7 @@ import { number, quantity } from '../dom/numbers.js';
 import { Row, Table, sentence, sign, words } from '../panels/parts.js';
 import { html, useEffect, useLayoutEffect, useRef, useState } from '../vendor/preact/preact.js';
 
-/** @import { PaperItem, Quantity, Preset, Failure } from 'contract' */
+/** @import { PaperItem, Quantity, Failure } from 'contract' */
 /** @import { ScenePage } from '../panels/scene-page.js' */
 
 /** Time that a figure may take, ms. */
@@ -263,7 +263,7 @@ export async function items() {
 /** @param {Quantity | undefined} value */
 const told = (value) => quantity(value?.value, value?.unit ?? '', 5);
 
-/** @param {{one: Preset, run: string}} props */
+/** @param {{one: Case, run: string}} props */
 function PaperCase({ one: { name, title, shows, printed, computed }, run }) {
   const rows = computed.map((value, index) => {
     const words = value.quantity.replaceAll(/[._]/g, ' ');

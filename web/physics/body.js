@@ -1,8 +1,5 @@
 // The quantities of a scene that the server derives, for drawings: lengths, outline, gravity in the plane, target of the table.
 
-/** @typedef {import('../api/scene-fields.js').Scene} Scene */
-/** @typedef {import('contract').Derived} Derived */
-
 /** Quantities of a scene that the server has not answered for. @type {Derived} */
 const UNKNOWN = { gravity_in_plane: 0, contact_distance: 0, radius_of_gyration: null, outline: null, target: null };
 

@@ -4,7 +4,6 @@ import { contactDistance } from './body.js';
 import { effectiveGravity } from './flight.js';
 import { number, quantity } from '../dom/numbers.js';
 
-/** @typedef {import('../api/scene-fields.js').Scene} Scene */
 /** Fields to release with, and a remark on it; or why nothing does. @typedef {{values: Record<string, number> | null, words: string}} Start */
 
 /** Contact points closer to the table than this touch it, m. */
@@ -78,7 +77,7 @@ function reached(scene, T, release) {
   return { values, words: scene.noise?.timing_sd > 0 ? ', noise aside' : '' };
 }
 
-/** The start in words, unless it lies beyond what the server takes. @param {Start} start @param {import('../api/scene-fields.js').Field[]} fields @returns {Start} */
+/** The start in words, unless it lies beyond what the server takes. @param {Start} start @param {Field[]} fields @returns {Start} */
 export function within({ values, words }, fields) {
   if (values === null) return refused(words);
   const told = [];

@@ -2,17 +2,13 @@
 
 import { contactDistance, derivedOf } from './body.js';
 
-/** @typedef {import('../api/scene-fields.js').Scene} Scene */
-/** @typedef {{x: number, y: number, theta: number}} Pose of the centre of gravity, m, and the angle, rad */
-/** @typedef {Pose & {t: number, x_dot: number, y_dot: number, theta_dot: number, duration: number}} Arc the flight that starts at `t`; its duration is 0 where there is none */
-
 /** Below this ct the first terms of a series are exact enough, and the closed form is a small difference. */
 const SMALL = 1e-5;
 
 /** In the plane, m/s². @param {Scene} scene */
 export const effectiveGravity = (scene) => derivedOf(scene).gravity_in_plane;
 
-/** The flight after an impact. @param {import('../run/impacts.js').Impact} impact @param {Scene} scene @returns {Arc} */
+/** The flight after an impact. @param {Impact} impact @param {Scene} scene @returns {Arc} */
 export function arcAfter(impact, scene) {
   const still = Number.isNaN(impact.y_dot_after);
   const l = contactDistance(scene);

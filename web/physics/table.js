@@ -3,20 +3,9 @@
 import { alongNormal } from '../run/impacts.js';
 import { contactDistance } from './body.js';
 
-/** @typedef {import('../api/scene-fields.js').Scene} Scene */
-/** @typedef {{pose: import('./flight.js').Pose, table: {x: number, y: number, alpha: number}}} Held */
+/** @typedef {{pose: Pose, table: {x: number, y: number, alpha: number}}} Held */
 
-/**
- * The table as it meets the rod.
- * @typedef {object} Strike
- * @property {number} t
- * @property {number} x of the contact point
- * @property {number} y of it, not 0 where the table strikes early or late
- * @property {number} alpha rad
- * @property {number} speed along the normal, m/s
- */
-
-/** The table as it met the rod at an impact. @param {import('../run/impacts.js').Impact} impact @param {Scene} scene @returns {Strike} */
+/** The table as it met the rod at an impact. @param {Impact} impact @param {Scene} scene @returns {Strike} */
 export function strikeOf(impact, scene) {
   const l = contactDistance(scene);
   return {
@@ -28,7 +17,7 @@ export function strikeOf(impact, scene) {
   };
 }
 
-/** The table at a strike that the server foresees. @param {NonNullable<import('contract').LiveNextStrike>} strike @returns {Strike} */
+/** The table at a strike that the server foresees. @param {NonNullable<NextStrike>} strike @returns {Strike} */
 export const strikeToCome = ({ t, x, y, alpha, table_velocity: velocity }) => ({
   t,
   x,

@@ -5,8 +5,6 @@ import { h } from '../dom/elements.js';
 import { number, quantity } from '../dom/numbers.js';
 import { shownFactor, shownUnit } from '../dom/units.js';
 
-/** @typedef {import('../run/run-state.js').RunState} RunState */
-
 /** Strikes that the curve has room for; those before are left out. */
 const STRIKES = 1000;
 /** Angles that differ by less are the same, rad. */

@@ -15,9 +15,7 @@ import { recordedRun } from '../timeline/others.js';
 import { html, render } from '../vendor/preact/preact.js';
 import { Parting } from './parting.js';
 
-/** @typedef {import('../api/scene-fields.js').Scene} Scene */
-
-/** @type {{name: string, symbol: string, colour: import('../charts/theme.js').Colour}[]} */
+/** Names and marks. @type {(Pick<Reference, 'symbol' | 'colour'> & {name: string})[]} */
 const SLOTS = [
   { name: 'A', symbol: '●', colour: 'series-3' },
   { name: 'B', symbol: '■', colour: 'series-2' },
@@ -31,9 +29,9 @@ const LINK_BYTES = 8 * 1024 - 1024;
 
 /** A pinned run: the query that means it, and what the server computes for it. */
 class Pin {
-  /** @type {import('contract').Trajectory['outcome'] | null} */
+  /** @type {Trajectory['outcome'] | null} */
   outcome = null;
-  /** @type {import('../run/run-state.js').RunState | null} */
+  /** @type {RunState | null} */
   run = null;
   /** Largest |θ| at an impact, rad; null for a point mass. @type {number | null} */
   largest = null;
@@ -69,7 +67,7 @@ const part = (place, query) => new URLSearchParams([...query].map(([key, value])
 /** @param {string} key */
 const isIntervention = (key) => key.startsWith('interventions.');
 
-/** @param {import('../app/page.js').Page} page @param {import('../timeline/others.js').Others} others */
+/** @param {Page} page @param {import('../timeline/others.js').Others} others */
 export function bringPins(page, others) {
   const parting = new Parting(page.run);
   /** @type {(Pin | null)[]} */

@@ -17,7 +17,7 @@ const BY_KEY = 0.04;
 /** A tilt is sent so long before the contact, s of wall time: as late as it may arrive in time. */
 const AHEAD_S = 0.07;
 
-/** @param {import('../app/page.js').Page} page @returns {import('../panels/panels.js').Neighbour} */
+/** @param {Page} page @returns {Neighbour} */
 export function bringHand(page) {
   const { run, view } = page;
   const button = h('button', { type: 'button', id: 'you', 'aria-pressed': 'false' }, 'You are the table');

@@ -31,7 +31,7 @@ function showTime(open) {
   remember(STORED, open);
 }
 
-/** @param {import('../app/page.js').Page} page */
+/** @param {Page} page */
 export function bringShell(page) {
   offerMenu(byId('tools-open'), byId('tools'));
   offerMenu(byId('share-open'), byId('share-menu'));

@@ -6,7 +6,6 @@ import { reasonOf } from '../panels/verdict/words.js';
 import { runWords } from '../panels/verdict/this-run.js';
 import { STORIES } from './stories.js';
 
-/** @typedef {import('../app/page.js').Page} Page */
 /** @typedef {import('./stories.js').Story} Story */
 
 /** @param {Page} page @param {Story} story */

@@ -2,7 +2,7 @@
 
 import { STUDY_SHEETS } from '../dom/styles.js';
 
-/** @type {Record<'survival' | 'design' | 'fit' | 'calls', import('../panels/card.js').Entry>} */
+/** @type {Record<'survival' | 'design' | 'fit' | 'calls', Entry>} */
 export const RIG_PANELS = {
   survival: {
     id: 'survival',

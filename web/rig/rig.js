@@ -6,9 +6,6 @@ import { brokenLinkNotice } from '../dom/notices.js';
 import { ScenePage, sceneOf } from '../panels/scene-page.js';
 import { RIG_PANELS } from './panels.js';
 
-/** @import { Field, Scene } from '../api/scene-fields.js' */
-/** @import { Preset as Case } from 'contract' */
-
 /** Sizes that the owner has, by field: `have.table.errors.angle_bias=0.001`. */
 const HAVE = /^have\.([a-z_.]+)$/;
 

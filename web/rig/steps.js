@@ -19,11 +19,9 @@ import { html, useEffect, useRef, useState } from '../vendor/preact/preact.js';
 import { RIG_PANELS } from './panels.js';
 
 /** @import { Rig } from './rig.js' */
-/** @import { Scene } from '../api/scene-fields.js' */
-/** @import { Stability, Controller as Law } from 'contract' */
+/** @import { Controller as Law } from 'contract' */
 /** @import { Ends } from '../panels/verdict/words.js' */
 /** @import { Line } from '../panels/verdict/facts.js' */
-/** @import { Result } from '../panels/parts.js' */
 
 /** The verdict on a scene, with the gains that this release allows. @param {string | URLSearchParams | null} query null for none */
 const useVerdict = (query) => useAnswer(query && `v1/stability?${query}&release_margins=true`, { quiet_ms: 0 });
@@ -93,7 +91,7 @@ function summary({ scene, chosen }) {
   return `${chosen ? `${chosen.title}: ` : ''}${parts.join(', ')}`;
 }
 
-/** @param {{rig: Rig, verdict: import('../panels/ask.js').Answer<import('contract').Stability>}} props */
+/** @param {{rig: Rig, verdict: Answer<Stability>}} props */
 function Values({ rig, verdict }) {
   const first = useRef(/** @type {HTMLElement | null} */ (null));
   const more = useRef(/** @type {HTMLElement | null} */ (null));
@@ -156,10 +154,10 @@ function tiltOf({ table = {}, release = {} }) {
   return typeof table.tilt_gain === 'number' ? table.tilt_gain * theta : null;
 }
 
-/** @param {{scene: Scene, derived: import('contract').Derived | null}} props */
+/** @param {{scene: Scene, derived: Derived | null}} props */
 function Drawing({ scene: typed, derived }) {
   const scene = drawable(typed, derived);
-  /** @type {import('contract').Derived} */
+  /** @type {Derived} */
   const { contact_distance: l, radius_of_gyration: rho, outline } = derivedOf(scene);
   const { height = 0, theta = 0 } = typed.release ?? {};
   const alpha = tiltOf(typed) ?? 0;
@@ -273,7 +271,7 @@ function Others({ rig }) {
   </p>`;
 }
 
-/** @param {{rig: Rig, verdict: import('../panels/ask.js').Answer<Stability>, result: import('../panels/parts.js').Result}} props */
+/** @param {{rig: Rig, verdict: Answer<Stability>, result: Result}} props */
 function Verdict({ rig, verdict: { answer, problem, lost, current }, result }) {
   const held = !rig.complete || problem || lost;
   const gains = RANGES.filter(([field]) => field !== 'table.energy_gain' || answer?.scene.table.energy_gain !== 0);
@@ -297,11 +295,11 @@ function Verdict({ rig, verdict: { answer, problem, lost, current }, result }) {
   <//>`;
 }
 
-/** The words of the server on values that it refuses. @param {import('../api/client.js').Problem} problem */
+/** The words of the server on values that it refuses. @param {Problem} problem */
 const faultOf = ({ errors, message }) =>
   errors.length === 0 ? message : errors.map(({ detail }) => `${capitalized(inWords(detail))}.`).join(' ');
 
-/** The first words of the step. @param {Rig} rig @param {import('../panels/ask.js').Answer<Stability>} verdict @returns {import('../panels/parts.js').Result} */
+/** The first words of the step. @param {Rig} rig @param {Answer<Stability>} verdict @returns {Result} */
 function verdictResult(rig, { answer, problem, lost }) {
   if (!rig.complete) return { tone: 'none', words: 'No verdict: a value is missing in step 1' };
   if (lost) return { tone: 'none', words: 'No verdict: the server does not answer' };
@@ -310,7 +308,7 @@ function verdictResult(rig, { answer, problem, lost }) {
 }
 
 /** @typedef {NonNullable<Stability['budget']>} Budget */
-/** @typedef {import('../panels/ask.js').Answer<Stability>} Limits */
+/** @typedef {Answer<Stability>} Limits */
 
 // Step 3: what ends the balance first. Each limit is set against what the owner has.
 
@@ -319,7 +317,7 @@ const BOUNCES = 500;
 /** The budget of a scene, once it stays. @param {string | URLSearchParams | null} query null for none */
 const useBudget = (query) => useAnswer(query && `v1/stability?${query}&budget=true&bounces=${BOUNCES}`);
 
-/** The first line in a sentence. @param {Line[]} lines @returns {import('../panels/parts.js').Result} */
+/** The first line in a sentence. @param {Line[]} lines @returns {Result} */
 function firstOf([first]) {
   if (!first) return { tone: 'stable', words: 'Nothing ends it within the errors that are tried' };
   if (!first.short) return { tone: 'stable', words: `All fine; the nearest: ${first.says}` };
@@ -423,10 +421,10 @@ function Whole({ budget, rig }) {
 
 /**
  * The verdict with the errors that the owner has told: those that end it come after the word of the rig without errors.
- * @param {import('../panels/parts.js').Result} result
+ * @param {Result} result
  * @param {Limits} limits
  * @param {Rig['have']} have
- * @returns {import('../panels/parts.js').Result}
+ * @returns {Result}
  */
 function withErrors(result, { answer, current }, have) {
   if (!result || !current || !answer?.budget?.errors || !['stable', 'beyond'].includes(result.tone)) return result;
@@ -436,7 +434,7 @@ function withErrors(result, { answer, current }, have) {
     : result;
 }
 
-/** @param {Rig} rig @param {Limits} limits @param {boolean} falls @returns {NonNullable<import('../panels/parts.js').Result>} */
+/** @param {Rig} rig @param {Limits} limits @param {boolean} falls @returns {NonNullable<Result>} */
 function budgetResult(rig, { answer, current, problem, lost }, falls) {
   if (lost) return { tone: 'none', words: 'The server does not answer' };
   if (rig.query === null || problem) return { tone: 'none', words: 'It has no limits without a verdict' };
@@ -563,7 +561,7 @@ function Controller({ rig, held }) {
 /** Measured bounces, over the run of the rig's values, and what they tell of them. @param {{rig: Rig}} props */
 function Measurements({ rig }) {
   const { name, content, words } = useMeasured();
-  const [told, tell] = useState(/** @type {import('../panels/parts.js').Result} */ (null));
+  const [told, tell] = useState(/** @type {Result} */ (null));
   useEffect(() => tell(null), [content]);
   const say = (/** @type {string} */ said, /** @type {boolean | null} */ holds) =>
     tell({ tone: holds === null ? 'none' : holds ? 'stable' : 'unstable', words: `${name}: ${said}` });

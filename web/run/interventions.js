@@ -13,8 +13,6 @@ export const VELOCITIES = {
   y_dot: { way: 'upwards', sign: 'ẏ', unit: 'm/s', usual: 0.1 },
 };
 
-/** @typedef {{impact: number, set: Record<string, number | string | number[]>, kick: Record<string, number>, guide: Record<string, string>}} Intervention `guide` has the parameters of a catch or a throw */
-
 /** @param {URLSearchParams} query @returns {Intervention[]} in their order */
 export function interventionsOf(query) {
   /** @type {Map<number, Intervention>} */

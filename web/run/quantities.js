@@ -1,7 +1,5 @@
 // The quantities of an impact as the page names them.
 
-/** @typedef {import('./impacts.js').Column} Column */
-
 /** Symbol or word, unit, and decimals where a number is read by itself. @type {Partial<Record<Column, [sign: string, unit: string, decimals: number]>>} */
 export const QUANTITIES = {
   t: ['t', 's', 4],

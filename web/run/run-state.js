@@ -4,20 +4,7 @@ import { setAt } from '../api/scene-fields.js';
 import { arcAfter, poseOn } from '../physics/flight.js';
 import { Impacts } from './impacts.js';
 
-/** @typedef {import('../api/scene-fields.js').Scene} Scene */
 /** @typedef {'idle' | 'connecting' | 'running' | 'paused' | 'lost' | 'ended'} Phase */
-
-/**
- * News of a run.
- * @typedef {object} Watcher
- * @property {() => void} [changed] phase, scene, speed or address
- * @property {() => void} [struck] there are new impacts
- * @property {() => void} [moved] another time is shown
- * @property {() => void} [cleared] a new run: all that was drawn is void
- * @property {(seconds: number) => void} [lost] seconds to the next try; NaN when the connection is back
- * @property {(problem: import('../api/client.js').Problem) => void} [refused]
- * @property {(message: {title: string, detail: string, errors: import('contract').ProblemError[]}) => void} [problem] with one message
- */
 
 /** The parts of hello and of every ack that a clock needs. @typedef {{now_ms: number, run_time: number, speed: number, paused: boolean}} Reading */
 
@@ -68,13 +55,13 @@ export class RunState {
   scene = null;
   /** The scene at the release. @type {Scene | null} */
   released = null;
-  /** The flight from the release to the first impact. @type {import('../physics/flight.js').Arc | null} */
+  /** The flight from the release to the first impact. @type {Arc | null} */
   fall = null;
-  /** The strike after the newest impact, as the server foresees it. @type {import('contract').LiveNextStrike | null} */
+  /** The strike after the newest impact, as the server foresees it. @type {NextStrike | null} */
   nextStrike = null;
-  /** With the end in contact, if there is one. @type {(import('contract').Outcome & {contact?: import('contract').HoldEnd}) | null} */
+  /** @type {Outcome | null} */
   outcome = null;
-  /** @type {import('./interventions.js').Intervention[]} */
+  /** @type {Intervention[]} */
   interventions = [];
   /** The query that replays this run. */
   query = new URLSearchParams();

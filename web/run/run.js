@@ -266,7 +266,7 @@ class Connection {
     this.#expect();
   }
 
-  /** @param {import('./impacts.js').Impact[]} fresh @param {import('contract').LiveNextStrike | null} next */
+  /** @param {Impact[]} fresh @param {NextStrike | null} next */
   #take(fresh, next) {
     const run = this.#run;
     const changes = run.interventions.filter(({ set }) => Object.keys(set).length > 0);

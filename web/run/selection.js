@@ -2,7 +2,7 @@
 
 import { LASTING } from './impacts.js';
 
-/** @typedef {[import('./impacts.js').Lasting, import('../charts/axes.js').Range]} Limits */
+/** @typedef {[Lasting, Interval]} Limits */
 
 export class Selection {
   /** The places of the selected impacts, oldest first. @type {number[]} */
@@ -13,7 +13,7 @@ export class Selection {
   #impacts;
   #judged = 0;
 
-  /** @param {import('./impacts.js').Impacts} impacts */
+  /** @param {Impacts} impacts */
   constructor(impacts) {
     this.#impacts = impacts;
   }

@@ -41,7 +41,7 @@ function usualOf(name) {
   return parse(String(Number(shownValue(usual, unit).toPrecision(2))), unit) ?? usual;
 }
 
-/** @param {import('../app/page.js').Page} page */
+/** @param {Page} page */
 export function bringSliders(page) {
   // Beside elements that others have made.
   const root = h('div', { class: 'contents' });
@@ -91,7 +91,7 @@ export function bringSliders(page) {
       if (type === 'change') page.setSpeed(speedAt(place));
       else draw();
     };
-    const guided = (/** @type {(page: import('../app/page.js').Page) => void} */ deed) => () => {
+    const guided = (/** @type {(page: Page) => void} */ deed) => () => {
       blame('');
       deed(page);
     };

@@ -7,10 +7,6 @@ import { fixedQuantity, roundStep } from '../dom/numbers.js';
 import { angles } from '../dom/units.js';
 import { contactDistance, derivedOf, reachAbove } from '../physics/body.js';
 
-/** @typedef {import('../physics/flight.js').Pose} Pose */
-/** @typedef {import('../api/scene-fields.js').Scene} Scene */
-/** @typedef {import('../dom/drag.js').Place} Place */
-
 /** Less than this is a press that slipped, px. */
 const SLIP = 4;
 /** Beyond this share of the way from the centre of gravity to an end, the end is held and the rod tilts. */
@@ -37,11 +33,11 @@ function lowestHeight(scene, theta) {
   return Math.max(...corners.map(([x, y]) => -(x * Math.sin(theta) + y * Math.cos(theta))));
 }
 
-/** @param {import('../app/page.js').Page} page */
+/** @param {Page} page */
 export function bringGrab(page) {
   const { view } = page;
   const box = byId('scene-frame');
-  /** The body as it was drawn last. @type {import('./world.js').Drawn} */
+  /** The body as it was drawn last. @type {Drawn} */
   let drawn;
   /** The pose in hand. @type {Pose | null} */
   let pose = null;
@@ -154,7 +150,7 @@ export function bringGrab(page) {
     if (pose) say(`Held ${words(pose)}. Enter releases it.`);
   };
 
-  /** Keeps the handle on the drawn body. @param {import('./world.js').Drawn} body */
+  /** Keeps the handle on the drawn body. @param {Drawn} body */
   const follow = (body) => {
     drawn = body;
     const { stage, scene, pose: at } = body;

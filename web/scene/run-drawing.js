@@ -7,14 +7,6 @@ import { strikeOf, strikeToCome, tableBetween } from '../physics/table.js';
 import { MODES } from '../run/impacts.js';
 import { drawFlight, drawOthers } from './world.js';
 
-/** @typedef {import('../api/scene-fields.js').Scene} Scene */
-/** @typedef {import('./world.js').Stage} Stage */
-/** @typedef {import('../run/impacts.js').Impact} Impact */
-/** @typedef {import('../physics/flight.js').Arc} Arc */
-/** @typedef {import('../physics/flight.js').Pose} Pose */
-/** @typedef {import('../physics/table.js').Strike} Strike */
-/** @typedef {import('../charts/theme.js').Colour} Colour */
-
 /** Time for which the marks of a strike are visible, in wall time. */
 const GLOW_S = 0.28;
 const TRAIL_FLIGHTS = 5;
@@ -36,7 +28,7 @@ export class RunDrawing {
   /** The end of the picture with the numbers of the newest strike. @type {'left' | 'right'} */
   #numbersAt = 'right';
 
-  /** @param {import('./world.js').World & {run: import('../run/run.js').Run, readout: HTMLElement}} view */
+  /** @param {import('./world.js').World & {run: Run, readout: HTMLElement}} view */
   constructor(view) {
     this.#view = view;
   }
@@ -251,7 +243,7 @@ const NARROW_PX = 400;
 const EDGE_PX = 10;
 const STAND_PX = 32;
 
-/** The strike with its strength from 0 to 1, where rod and table met. @param {Stage} stage @param {Impact} impact @param {import('../physics/table.js').Strike} strike @param {number} strength */
+/** The strike with its strength from 0 to 1, where rod and table met. @param {Stage} stage @param {Impact} impact @param {Strike} strike @param {number} strength */
 function drawStrike(stage, impact, strike, strength) {
   const { surface } = stage;
   const [x, y] = [stage.x(strike.x), stage.y(strike.y)];

@@ -6,10 +6,6 @@ import { contactDistance, drawable } from '../physics/body.js';
 import { poseOn } from '../physics/flight.js';
 import { World, drawFlights } from './world.js';
 
-/** @typedef {import('../api/scene-fields.js').Scene} Scene */
-/** @typedef {import('../physics/flight.js').Pose} Pose */
-/** @typedef {import('contract').Derived} Derived */
-
 const stillness = matchMedia('(prefers-reduced-motion: reduce)');
 
 export class SceneView extends World {
@@ -25,12 +21,12 @@ export class SceneView extends World {
   #moving = !stillness.matches;
   /** Draws runs, once a run has begun. @type {import('./run-drawing.js').RunDrawing | null} */
   #drawing = null;
-  /** The run that the typed scene will have, once it is known. @type {import('../run/run-state.js').RunState | null} */
+  /** The run that the typed scene will have, once it is known. @type {RunState | null} */
   #ahead = null;
   /** The typed scene falls from its release since then, at a speed, until its run is there. @type {{since_ms: number, speed: number} | null} */
   #falls = null;
 
-  /** @param {HTMLElement} box @param {HTMLElement} readout @param {import('../run/run.js').Run} run */
+  /** @param {HTMLElement} box @param {HTMLElement} readout @param {Run} run */
   constructor(box, readout, run) {
     super(box, 1);
     this.readout = readout;
@@ -86,7 +82,7 @@ export class SceneView extends World {
     this.redraw();
   }
 
-  /** Shows where the typed scene will fly. @param {import('../run/run-state.js').RunState} run */
+  /** Shows where the typed scene will fly. @param {RunState} run */
   preview(run) {
     this.#ahead = run;
     this.learn(run.released?.derived);

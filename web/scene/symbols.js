@@ -25,7 +25,7 @@ const ASIDE = 36;
 /** An arc of fewer pixels is not seen. */
 const LEAST_PX = 1;
 
-/** The symbols and their values now, in words. @param {import('./world.js').Drawn} drawn */
+/** The symbols and their values now, in words. @param {Drawn} drawn */
 function spokenSymbols({ scene, pose, table }) {
   const { contact_distance: l, radius_of_gyration: rho } = derivedOf(scene);
   const alpha = `α ${fixedQuantity(table.alpha, 'rad', 3)}`;
@@ -44,7 +44,7 @@ function spokenSymbols({ scene, pose, table }) {
 /** The place at a distance along a direction that is turned from upright. @param {Place} from @param {number} turned rad @param {number} px */
 const at = (from, turned, px) => ({ x: from.x - px * Math.sin(turned), y: from.y - px * Math.cos(turned) });
 
-/** @param {import('./world.js').Drawn} drawn */
+/** @param {Drawn} drawn */
 function drawSymbols({ stage, scene, pose, table, half, struck }) {
   const { surface, metre } = stage;
   const { context } = surface;
@@ -112,7 +112,7 @@ export function bringSymbols(view) {
   const words = h('p', { id: 'symbols-words', class: 'unseen' });
   const button = byId('symbols');
   const isOn = () => button.getAttribute('aria-pressed') === 'true';
-  const speak = paced(SPOKEN_MS, (/** @type {import('./world.js').Drawn} */ drawn) => {
+  const speak = paced(SPOKEN_MS, (/** @type {Drawn} */ drawn) => {
     words.textContent = isOn() ? `Drawn in the scene: ${spokenSymbols(drawn)}.` : '';
   });
   const show = (/** @type {boolean} */ on) => {

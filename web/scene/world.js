@@ -5,24 +5,7 @@ import { number, roundStep } from '../dom/numbers.js';
 import { contactDistance, derivedOf } from '../physics/body.js';
 import { poseOn } from '../physics/flight.js';
 
-/** @typedef {import('../api/scene-fields.js').Scene} Scene */
-/** @typedef {import('../charts/surface.js').Surface} Surface */
-/** @typedef {import('../charts/theme.js').Colour} Colour */
-/** @typedef {import('../physics/flight.js').Pose} Pose */
-/** The middle of its face, m, and its tilt. @typedef {{x: number, y: number, alpha: number}} Table */
-
-/** The rod of another run. @typedef {{run: import('../run/run-state.js').RunState, colour: Colour}} OtherRod */
-
-/**
- * The drawn things, for parts that go with them.
- * @typedef {object} Drawn
- * @property {Stage} stage
- * @property {Scene} scene
- * @property {Pose} pose
- * @property {Table} table
- * @property {number} half of the table's width, m
- * @property {boolean} struck the marks of a strike are there
- */
+/** The rod of another run. @typedef {{run: RunState, colour: Colour}} OtherRod */
 
 /**
  * Drawings around the body and its table.
@@ -31,17 +14,6 @@ import { poseOn } from '../physics/flight.js';
  * @property {(stage: Stage) => void} [under] the table
  * @property {(stage: Stage) => void} [beside] between table and body
  * @property {(stage: Stage) => boolean} [over] the body; true where that is a strike
- */
-
-/**
- * The world on its canvas at a moment.
- * @typedef {object} Stage
- * @property {Surface} surface
- * @property {(x: number) => number} x metres to px
- * @property {(y: number) => number} y
- * @property {number} metre px
- * @property {number} floor the lower end of the picture above the ruler, px
- * @property {boolean} measured true where rulers, symbols and numbers of strikes are drawn
  */
 
 /** Height of the ruler below the scene, px. */
@@ -194,7 +166,7 @@ export class World extends CanvasView {
     surface.text(words, right, row - 2, { colour: 'good', align: 'right', baseline: 'bottom' });
   }
 
-  /** @param {Scene} scene @param {Pose} pose @param {Table} table @param {Around} around */
+  /** @param {Scene} scene @param {Pose} pose @param {TablePose} table @param {Around} around */
   paint(scene, pose, table, { ink, under, beside, over }) {
     const { stage } = this;
     const half = this.halfTable(scene);
@@ -280,7 +252,7 @@ export function drawOthers(stage, others, t) {
   });
 }
 
-/** @param {Stage} stage @param {Table} table @param {number} half of its width, m */
+/** @param {Stage} stage @param {TablePose} table @param {number} half of its width, m */
 function drawTable({ surface, x: across, y: up, metre, floor }, table, half) {
   const { context } = surface;
   const [x, y] = [across(table.x), up(table.y)];
@@ -296,7 +268,7 @@ function drawTable({ surface, x: across, y: up, metre, floor }, table, half) {
   surface.disc(x, y + 13, 5, { fill: 'surface', stroke: 'accent', width: 2 });
 }
 
-/** The path of the centre of gravity on a flight, up to a time. @param {Stage} stage @param {import('../physics/flight.js').Arc} arc @param {number} end s @param {Scene} scene @param {number} [width] px */
+/** The path of the centre of gravity on a flight, up to a time. @param {Stage} stage @param {Arc} arc @param {number} end s @param {Scene} scene @param {number} [width] px */
 export function drawFlight({ surface, x: across, y: up }, arc, end, scene, width = 1.5) {
   const { context } = surface;
   context.beginPath();
@@ -307,7 +279,7 @@ export function drawFlight({ surface, x: across, y: up }, arc, end, scene, width
   surface.stroke('accent', { width });
 }
 
-/** A faint path before a release: later flights are fainter; a dot marks each impact. @param {Stage} stage @param {import('../run/run-state.js').RunState} run */
+/** A faint path before a release: later flights are fainter; a dot marks each impact. @param {Stage} stage @param {RunState} run */
 export function drawFlights(stage, run) {
   for (let flight = 0; flight < Math.min(FLIGHTS, run.impacts.end); flight += 1) {
     const arc = run.arcAt(flight === 0 ? -1 : run.impacts.at('t', flight - 1));

@@ -25,8 +25,8 @@ const LATEST = 20_000;
 const stillness = matchMedia('(prefers-reduced-motion: reduce)');
 
 /**
- * @param {import('../app/page.js').Page} page
- * @param {import('../api/scene-fields.js').Field} field the tilt gain
+ * @param {Page} page
+ * @param {Field} field the tilt gain
  * @param {import('./timeline.js').Timeline} timeline
  * @param {import('./others.js').Others} others
  */
@@ -121,7 +121,7 @@ export function bringFork(page, field, timeline, others) {
     const release = sceneQuery(run.released ?? {}, page.chosen, page.fields);
     const query = new URLSearchParams([...release, ...interventionQuery(interventions)]);
     try {
-      /** @type {import('contract').Trajectory} */
+      /** @type {Trajectory} */
       const answer = await get(`v1/trajectories?${query}&bounces=${from.n + AHEAD}`, signal);
       if (at !== from) return;
       const label = `what if κ ${number(wanted)}`;

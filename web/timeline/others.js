@@ -7,8 +7,8 @@ import { RunState } from '../run/run-state.js';
 /**
  * The run of an answer of `/v1/trajectories`. In flight ẋ and θ̇ stay or decay and ẏ falls, so the states after the strikes follow from
  * those before the next ones.
- * @param {import('contract').Trajectory} answer
- * @param {import('../run/interventions.js').Intervention[]} [interventions]
+ * @param {Trajectory} answer
+ * @param {Intervention[]} [interventions]
  */
 export function recordedRun(answer, interventions = []) {
   const run = new RunState(answer.impacts.n.length);
@@ -45,7 +45,7 @@ export function recordedRun(answer, interventions = []) {
   return run;
 }
 
-/** A run beside the live one; where it is staged, its rod is drawn too. @typedef {import('../charts/impacts/companions.js').Reference & {staged: boolean}} Other */
+/** A run beside the live one; where it is staged, its rod is drawn too. @typedef {Reference & {staged: boolean}} Other */
 
 /** The dots of the other runs in the planes, and their rods on the stage of the live one. */
 export class Others {
@@ -53,7 +53,7 @@ export class Others {
   #others = new Map();
   #page;
 
-  /** @param {import('../app/page.js').Page} page */
+  /** @param {Page} page */
   constructor(page) {
     this.#page = page;
   }

@@ -37,14 +37,14 @@ const MOMENTS = /** @type {const} */ ({
   over: [0, 'muted'],
 });
 
-/** A kick is a triangle, a change a square, a fall a cross, another end a dot. @param {import('../charts/surface.js').Surface} surface @param {Mark['kind']} kind @param {number} x @param {number} y */
+/** A kick is a triangle, a change a square, a fall a cross, another end a dot. @param {Surface} surface @param {Mark['kind']} kind @param {number} x @param {number} y */
 function drawMoment(surface, kind, x, y) {
   if (kind !== 'fell') return drawMark(surface, MOMENTS[kind][0], x, y, 3, MOMENTS[kind][1]);
   surface.line('strike', x - 4, y + 4, x + 4, y + 12, { width: 2.5 });
   surface.line('strike', x - 4, y + 12, x + 4, y + 4, { width: 2.5 });
 }
 
-/** The marks in the order of the run; those of impacts that are not kept are left out. @param {import('../run/run-state.js').RunState} run @param {import('../api/scene-fields.js').Field[]} fields */
+/** The marks in the order of the run; those of impacts that are not kept are left out. @param {RunState} run @param {Field[]} fields */
 function marksOf({ impacts, interventions, outcome, fate }, fields) {
   /** @type {Mark[]} */
   const marks = [];
@@ -72,7 +72,7 @@ function marksOf({ impacts, interventions, outcome, fate }, fields) {
 
 /** The time line, for those who step through it and show runs beside this one. @typedef {ReturnType<typeof bringTimeline>} Timeline */
 
-/** @param {import('../app/page.js').Page} page */
+/** @param {Page} page */
 export function bringTimeline(page) {
   const { run } = page;
   const { impacts } = run;
@@ -247,7 +247,7 @@ export function bringTimeline(page) {
     }
     if (fork && fork.t >= low) surface.line('measured', x(fork.t), y - 9, x(fork.t), y + 9, { width: 2 });
     for (const { t, kind } of marks) drawMoment(surface, kind, x(t), y - 8);
-    /** @type {import('../charts/theme.js').Colour[]} */
+    /** @type {Colour[]} */
     const [fill, stroke] = past === null ? ['accent', 'surface'] : ['surface', 'accent'];
     surface.disc(x(shown), y, 7, { fill, stroke, width: 2.5 });
   };

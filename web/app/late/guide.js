@@ -3,8 +3,6 @@
 import { THROWN, contactDistance } from '../../physics/body.js';
 import { changeRun } from './settings.js';
 
-/** @typedef {import('../page.js').Page} Page */
-
 /** Time for which a throw out of a hold is waited for before the heights after it are sent, ms. */
 const THROWN_MS = 50;
 
@@ -46,7 +44,7 @@ function juggle(page, heights) {
   );
 }
 
-/** @param {Page} page @returns {import('../../panels/settings.js').Guide} */
+/** @param {Page} page @returns {Guide} */
 export const guideOf = (page) => ({
   live: () => page.run.active,
   held: () => isHeld(page),

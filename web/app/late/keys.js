@@ -21,21 +21,21 @@ function focusMap() {
   else if (body.checkVisibility()) requestAnimationFrame(focusMap);
 }
 
-/** @param {import('../page.js').Page} page */
+/** @param {Page} page */
 function showMap(page) {
   /** @type {HTMLDialogElement | null} */ (document.querySelector('dialog.large'))?.close();
   page.panels?.show('map');
   focusMap();
 }
 
-/** @param {import('../page.js').Page} page @param {string} key */
+/** @param {Page} page @param {string} key */
 function changeSpeed(page, key) {
   const { speed } = page;
   const next = key === '[' ? SPEEDS.findLast((one) => one < speed) : SPEEDS.find((one) => one > speed);
   page.setSpeed(next ?? speed);
 }
 
-/** @param {import('../page.js').Page} page @returns {Key[]} */
+/** @param {Page} page @returns {Key[]} */
 const keysOf = (page) => [
   [' ', 'Space', 'Run, pause, resume', () => page.toggle()],
   ['.', '.', 'Stop at the next strike', () => void ((page.run.active || page.run.past !== null) && page.step())],
@@ -56,7 +56,7 @@ const keysOf = (page) => [
   ['?', '?', 'Show these keys', () => byId('keys', HTMLDialogElement).showModal()],
 ];
 
-/** @param {import('../page.js').Page} page */
+/** @param {Page} page */
 export function listenToKeys(page) {
   const dialog = byId('keys', HTMLDialogElement);
   const on = byId('keys-on', HTMLInputElement);

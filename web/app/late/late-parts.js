@@ -36,7 +36,7 @@ const STYLES = [
   'app/app.css',
 ];
 
-/** @param {import('../page.js').Page} page */
+/** @param {Page} page */
 export async function bringLateParts(page) {
   page.history = bringHistory(page);
   // Parts come with their styles, or without them where those do not load.
@@ -79,7 +79,7 @@ export async function bringLateParts(page) {
   performance.mark('all parts');
 }
 
-/** The charts of the bounces and the eigenvalues, among the reasons. @param {import('../page.js').Page} page */
+/** The charts of the bounces and the eigenvalues, among the reasons. @param {Page} page */
 function bringCharts(page) {
   const { run, view } = page;
   page.plots = [
@@ -97,12 +97,12 @@ function bringCharts(page) {
     const { figure } = one;
     byId('charts').append(figure.element);
     // The eigenvalues are a picture of the server.
-    const view = one === page.circle ? undefined : /** @type {import('../../export/capture.js').Layered} */ (one);
+    const view = one === page.circle ? undefined : /** @type {CanvasView} */ (one);
     figure.offer(enlarger(figure.element, figure.title, () => savesOf(page, figure.id, figure.title, view)));
   }
 }
 
-/** The time line, and what goes with it: the speed, deeds, another run from here on. @param {import('../page.js').Page} page */
+/** The time line, and what goes with it: the speed, deeds, another run from here on. @param {Page} page */
 function bringTime(page) {
   page.sliders = bringSliders(page);
   const timeline = bringTimeline(page);

@@ -12,8 +12,6 @@ import { GAIN } from '../page.js';
 import { showRun } from '../run-watcher.js';
 import { runsByItself, sceneChanged } from '../scenes.js';
 
-/** @typedef {import('../page.js').Page} Page */
-
 /** Changes the run under way, where its table can. @param {Page} page @param {string} path @param {boolean} final */
 export function changeRun(page, path, final) {
   const { run, fields } = page;

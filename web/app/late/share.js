@@ -4,8 +4,6 @@ import { copy } from '../../dom/clipboard.js';
 import { byId, h } from '../../dom/elements.js';
 import { notice } from '../../dom/notices.js';
 
-/** @typedef {import('../page.js').Page} Page */
-
 /** Saves the answer to a call. @param {string | null} path @param {string} name of the file */
 function save(path, name) {
   if (path) h('a', { href: path, download: name }).click();
@@ -63,8 +61,8 @@ export function bringShare(page) {
  * @param {Page} page
  * @param {string} id
  * @param {string} title
- * @param {import('../../export/capture.js').Layered} [view] where the page draws it; else the server does
- * @returns {import('../../export/save-actions.js').Saves}
+ * @param {CanvasView} [view] where the page draws it; else the server does
+ * @returns {Saves}
  */
 export function savesOf(page, id, title, view) {
   // The frame that embeds the chart is at the page's address.

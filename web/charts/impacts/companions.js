@@ -6,52 +6,7 @@ import { include, toX, toY } from '../axes.js';
 import { drawMark } from '../marks.js';
 import { CanvasView, invalidate } from '../surface.js';
 
-/** @typedef {import('../axes.js').Range} Range */
-/** @typedef {import('../surface.js').Surface} Surface */
-/** @typedef {import('../../run/run-state.js').RunState} RunState */
-/** @typedef {import('../../run/impacts.js').Impacts} Impacts */
 /** An impact by its number, in the values of the axes. @typedef {{n: number, x: number, y: number}} Point */
-
-/**
- * @typedef {object} Axis
- * @property {import('../../run/impacts.js').Lasting} column
- * @property {boolean} [symmetric] about zero
- * @property {number} [span] least span, so that rounding does not look like motion
- * @property {number} [from] a low end that stays
- */
-
-/**
- * @typedef {object} Meaning
- * @property {string} id
- * @property {string} title
- * @property {string | Node} about
- * @property {Axis} x
- * @property {Axis} y
- * @property {import('../../run/impacts.js').Column[]} listed in the table of its numbers, after the bounce and its time
- * @property {string} hint while there is nothing
- * @property {string} [lacking] when impacts have no such values
- * @property {string} spoken what it shows, for those who do not see it
- * @property {() => {value: number, name: string}[]} [levels] horizontal lines worth comparing with
- * @property {typeof import('../../physics/first-impact.js').angleStart} [start] the release whose first impact is at a place in it
- */
-
-/**
- * A run to compare with.
- * @typedef {object} Reference
- * @property {RunState} run
- * @property {number} [from] the first impact that is shown
- * @property {string} symbol one of ●■◆▲
- * @property {import('../theme.js').Colour} colour
- * @property {string} label
- */
-
-/**
- * A release that is offered.
- * @typedef {object} Offered
- * @property {{x: number, y: number} | null} at the place of its first impact; null while that is not known
- * @property {boolean} clicked true in the plot that was clicked
- * @property {RunState | null} run null while it is awaited
- */
 
 const SYMBOLS = '●■◆▲';
 /** The radius of a ring, px. */
@@ -71,7 +26,7 @@ export class ComparingPlot extends CanvasView {
   impacts;
   /** @type {Meaning} */
   meaning;
-  /** @type {import('../axes.js').Frame} */
+  /** @type {Frame} */
   frame = { left: 0, top: 0, width: 0, height: 0, x: { low: 0, high: 1 }, y: { low: 0, high: 1 } };
   /** @type {(Reference & {points: Point[]})[]} */
   #references = [];
@@ -131,14 +86,14 @@ export class ComparingPlot extends CanvasView {
     /** @type {Point[]} */
     const points = [];
     for (let place = from; run && place < run.impacts.end; place += 1) {
-      const at = (/** @type {import('../../run/impacts.js').Column} */ column) => run.impacts.at(column, place);
+      const at = (/** @type {Column} */ column) => run.impacts.at(column, place);
       const point = { n: at('n'), x: at(x.column), y: at(y.column) };
       if (!Number.isNaN(point.x + point.y)) points.push(point);
     }
     return points;
   }
 
-  /** Widens scales by the other runs. A ghost does where nothing else is: under a click they would run away. @param {{x: Range, y: Range}} extent */
+  /** Widens scales by the other runs. A ghost does where nothing else is: under a click they would run away. @param {{x: Interval, y: Interval}} extent */
   extendByOthers(extent) {
     const hold = (/** @type {Point[]} */ points) => {
       for (const { x, y } of points) {

@@ -11,14 +11,11 @@ import { recordedRun } from '../../timeline/others.js';
 import { invalidate } from '../surface.js';
 import { listen } from './plot-pointer.js';
 
-/** @typedef {import('./plots.js').ImpactPlot} ImpactPlot */
-/** @typedef {import('../../app/page.js').Page} Page */
-
 const BY_POINTER = 'Drag over a plot to select bounces; click in a plane to place a release there.';
 const BY_KEYS =
   'Left and right go from bounce to bounce, with Shift they select; Enter offers a release whose first bounce is that one, a second Enter releases it; Escape drops it and clears the selection.';
 
-/** @param {HTMLElement} bar over the plots @param {Page} page @returns {import('../../panels/panels.js').Neighbour} */
+/** @param {HTMLElement} bar over the plots @param {Page} page @returns {Neighbour} */
 export function bringInteraction(bar, page) {
   const { run, view, plots } = page;
   const { impacts } = run;
@@ -86,9 +83,9 @@ export function bringInteraction(bar, page) {
 
 /**
  * The places of the selected contacts along the floor of the scene.
- * @param {import('../../scene/world.js').Stage} stage
- * @param {import('../../api/scene-fields.js').Scene} scene
- * @param {import('../../run/impacts.js').Impacts} impacts
+ * @param {Stage} stage
+ * @param {Scene} scene
+ * @param {Impacts} impacts
  * @param {Selection} selection
  */
 function drawContacts({ surface, x: across, y }, scene, impacts, selection) {
@@ -131,7 +128,7 @@ function bringReleases(page, say) {
     h('button', { type: 'button', class: 'ghost-drop', 'aria-label': 'Drop it', click: () => drop() }, '×'),
   );
 
-  /** @param {import('../../run/run-state.js').RunState | null} run */
+  /** @param {RunState | null} run */
   const show = (run) => {
     const first = run && run.impacts.end > 0 ? run.impacts.row(0) : null;
     for (const plot of page.plots) {

@@ -6,9 +6,7 @@ import { toX, toY } from '../axes.js';
 import { KEY_STEPS } from '../readable/chart-reader.js';
 import { invalidate } from '../surface.js';
 
-/** @typedef {import('./plots.js').ImpactPlot} ImpactPlot */
 /** @typedef {import('../../run/selection.js').Selection} Selection */
-/** Px from the corner of a plot's box. @typedef {{x: number, y: number}} Place */
 /** The action of a click at a place. @typedef {Place & {words: string, possible: boolean}} Offer */
 
 /**
@@ -22,7 +20,7 @@ import { invalidate } from '../surface.js';
 
 /**
  * @typedef {object} PointerParts
- * @property {import('../../run/impacts.js').Impacts} impacts
+ * @property {Impacts} impacts
  * @property {Selection} selection
  * @property {Releases | null} releases without them nothing is released
  * @property {(place: number | null) => void} point at an impact in all plots
@@ -107,7 +105,7 @@ export function listen(plot, { impacts, selection, releases, point, say }) {
   const brush = (from, to) => {
     const { width, height, x, y } = plot.frame;
     const [one, other] = [valuesAt(from), valuesAt(to)];
-    /** @param {number} a @param {number} b @param {number} pixel @returns {import('../axes.js').Range} */
+    /** @param {number} a @param {number} b @param {number} pixel @returns {Interval} */
     const range = (a, b, pixel) => {
       const decimals = Math.min(20, Math.max(0, Math.ceil(-Math.log10(pixel))));
       return { low: Number(Math.min(a, b).toFixed(decimals)), high: Number(Math.max(a, b).toFixed(decimals)) };
@@ -193,7 +191,7 @@ export function listen(plot, { impacts, selection, releases, point, say }) {
   }
 }
 
-/** The selected ranges; where an axis has none, as wide as the plot. @param {import('../surface.js').Surface} surface @param {ImpactPlot} plot @param {Selection} selection */
+/** The selected ranges; where an axis has none, as wide as the plot. @param {Surface} surface @param {ImpactPlot} plot @param {Selection} selection */
 function drawBrush(surface, { frame, meaning }, selection) {
   const [across, up] = [meaning.x, meaning.y].map(
     ({ column }) => selection.ranges.find(([name]) => name === column)?.[1],
@@ -210,7 +208,7 @@ function drawBrush(surface, { frame, meaning }, selection) {
   surface.stroke('ink');
 }
 
-/** @param {import('../surface.js').Surface} surface @param {ImpactPlot} plot @param {Offer} offer */
+/** @param {Surface} surface @param {ImpactPlot} plot @param {Offer} offer */
 function drawOffer(surface, { frame: { left, top, width } }, { x, y, words, possible }) {
   const colour = possible ? 'ink' : 'strike';
   if (possible) {

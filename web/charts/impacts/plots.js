@@ -11,10 +11,6 @@ import { angleStart, velocityStart } from '../../physics/first-impact.js';
 import { quantityOf } from '../../run/quantities.js';
 import { ComparingPlot } from './companions.js';
 
-/** @typedef {import('../axes.js').Frame} Frame */
-/** @typedef {import('../../run/impacts.js').Impacts} Impacts */
-/** @typedef {import('../../run/impacts.js').Column} Column */
-
 const AXES = /** @type {const} */ (['x', 'y']);
 /** More dots than these are drawn pixel by pixel, and small. */
 const MANY = 20_000;
@@ -29,7 +25,7 @@ export class ImpactPlot extends ComparingPlot {
   figure;
   /** The impacts that stand out. @type {import('../../run/selection.js').Selection | null} */
   selection = null;
-  /** Draws over the dots. @type {((surface: import('../surface.js').Surface) => void) | null} */
+  /** Draws over the dots. @type {((surface: Surface) => void) | null} */
   over = null;
   /** There are new impacts. */
   struck = paced(PACE_MS, () => invalidate(this));
@@ -43,7 +39,7 @@ export class ImpactPlot extends ComparingPlot {
   #many = false;
   #extent = nothing();
 
-  /** @param {Impacts} impacts @param {import('./companions.js').Meaning} meaning */
+  /** @param {Impacts} impacts @param {Meaning} meaning */
   constructor(impacts, meaning) {
     /** @type {Column[]} */
     const listed = ['n', 't', ...meaning.listed];
@@ -265,7 +261,7 @@ export const velocityPlane = (impacts) =>
 /**
  * The energy at the impacts, with its target.
  * @param {Impacts} impacts
- * @param {() => import('../../api/scene-fields.js').Scene | null} scene with what follows from it
+ * @param {() => Scene | null} scene with what follows from it
  */
 export function energyPlot(impacts, scene) {
   /** The wanted energy G·y* with energy feedback; the first energy where a bounce keeps it. */

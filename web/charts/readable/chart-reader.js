@@ -13,14 +13,6 @@ export const KEY_STEPS = {
 };
 
 /**
- * @typedef {object} Readable
- * @property {(event: PointerEvent) => number | null} nearest the item at a place on the screen
- * @property {(key: string, at: number | null) => number | null | undefined} moved the item that a key leads to; undefined for other keys
- * @property {(item: number | null) => void} mark
- * @property {(item: number) => string} words
- */
-
-/**
  * The item that a key leads to among items in a row, if there are any: arrows go one on, page up and page down a tenth.
  * @param {string} key
  * @param {number | null} at

@@ -79,7 +79,7 @@ export class FigurePoints {
     this.#ring.setAttribute('cy', String(point.y));
   }
 
-  /** Goes along the points by keys. @param {(index: number) => string} words @returns {import('./chart-reader.js').Readable} */
+  /** Goes along the points by keys. @param {(index: number) => string} words @returns {Readable} */
   reader(words) {
     return {
       nearest: (event) => this.nearest(event),
@@ -131,7 +131,7 @@ export class FigureColumns {
     this.#line.setAttribute('d', way.join(''));
   }
 
-  /** Goes along items by pointer and keys. @param {number[]} values of the items along x @param {(item: number) => string} words @returns {import('./chart-reader.js').Readable} */
+  /** Goes along items by pointer and keys. @param {number[]} values of the items along x @param {(item: number) => string} words @returns {Readable} */
   reader(values, words) {
     return {
       nearest: (event) => {

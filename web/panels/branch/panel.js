@@ -11,7 +11,7 @@ import { Term } from '../../dom/glossary.js';
 import { Folded, Row, Table, brief, useNear } from '../parts.js';
 import { requestOf } from '../settings.js';
 
-/** @import { BranchChange as Change, Stability } from 'contract' */
+/** @import { BranchChange as Change } from 'contract' */
 
 const GAIN = 'table.tilt_gain';
 /** The part of the stable interval that is shown to each side of its end. */
@@ -50,7 +50,7 @@ function branchOf(query, answer) {
   return requestOf('v1/periodic-orbits', query, { family: 'symmetric', theta: BEGIN, ...sweep });
 }
 
-/** @param {{page: import('../settings.js').Page}} props */
+/** @param {{page: PanelPage}} props */
 export function Branch({ page: { query } }) {
   const [place, near] = useNear();
   const verdict = useAnswer(near ? requestOf('v1/stability', query, {}) : null);

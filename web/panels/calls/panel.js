@@ -49,7 +49,7 @@ const LANGUAGES = {
 const choices = Object.fromEntries(Object.entries(LANGUAGES).map(([name, [title]]) => [name, title]));
 const SETTINGS = { language: { label: 'Language', usual: 'curl', choices } };
 
-/** @param {{page: import('../settings.js').Page}} props */
+/** @param {{page: PanelPage}} props */
 export function Calls({ page }) {
   const { values } = useSettings(page, 'calls', SETTINGS);
   const { query } = page;

@@ -13,13 +13,13 @@ import { Form, NO_SCENE, Numbers, Row, Table, brief, words } from '../parts.js';
 import { otherFaults, refusalOf, requestOf, useSettings } from '../settings.js';
 import { CATCH, CatchFields, described, inUse, namesOf } from './settings.js';
 
-/** @import { ProblemError, Catch, CatchOutcome as Outcome } from 'contract' */
+/** @import { Catch, CatchOutcome as Outcome } from 'contract' */
 
 /** Heights of throws in distances from contact point to centre of gravity, and the angle. */
 const THROWS = { height: THROWN, theta: 0, low: 1.5, high: THROWN };
 /** @typedef {keyof typeof THROWS} Throw */
 
-/** @type {Record<string, import('../settings.js').Setting>} */
+/** @type {Record<string, Setting>} */
 const SETTINGS = {
   ...CATCH,
   height: { label: 'to', unit: 'm' },
@@ -38,7 +38,7 @@ const REACH = {
 const PROMISE =
   'After a release of this scene, the table brings the body to rest and keeps it upright in lasting contact.';
 
-/** @param {{page: import('../settings.js').Page}} props */
+/** @param {{page: PanelPage}} props */
 export function CatchBody({ page }) {
   const { guide, query } = page;
   const [wanted, want] = useState(/** @type {string | null} */ (null));
@@ -95,7 +95,7 @@ export function CatchBody({ page }) {
 /**
  * The run under way: catch it, throw it, juggle it.
  * @param {object} props
- * @param {import('../settings.js').Guide} props.guide
+ * @param {Guide} props.guide
  * @param {Record<string, any>} props.values
  * @param {(name: string, hint?: string) => unknown} props.field
  * @param {ProblemError[]} props.refused
@@ -232,7 +232,7 @@ export function Sheet({ answer, figure, path }) {
     </div>`;
 }
 
-/** Reads a catch moment by moment, through strikes and hold. @param {Catch} answer @returns {(figure: SVGSVGElement) => import('../../charts/readable/chart-reader.js').Readable} */
+/** Reads a catch moment by moment, through strikes and hold. @param {Catch} answer @returns {(figure: SVGSVGElement) => Readable} */
 const reader =
   ({ strikes, hold }) =>
   (figure) => {

@@ -3,8 +3,6 @@
 import { number } from '../../dom/numbers.js';
 import { html } from '../../vendor/preact/preact.js';
 
-/** @import { Setting } from '../settings.js' */
-
 /** The strategies by their names in requests. @type {Record<string, string>} */
 const STRATEGIES = { bounce_down: 'Bounce down', plan: 'Plan', brake: 'Brake' };
 

@@ -15,7 +15,7 @@ import { GAINS } from '../verdict/facts.js';
 /** The usual weights of deviations. */
 const WEIGHTS = { x: 1, theta: 10, x_dot: 0.1, theta_dot: 0.1 };
 
-/** @param {string} letter @param {number} usual @param {string} key @param {boolean} [free] it may be 0 @returns {import('../settings.js').Setting} */
+/** @param {string} letter @param {number} usual @param {string} key @param {boolean} [free] it may be 0 @returns {Setting} */
 const weight = (letter, usual, key, free = true) => ({
   key,
   label: html`of ${sign(letter)}`,
@@ -24,7 +24,7 @@ const weight = (letter, usual, key, free = true) => ({
   must: free ? 'a number from 0 on' : 'a number above 0',
 });
 
-/** @type {Record<string, import('../settings.js').Setting>} */
+/** @type {Record<string, Setting>} */
 const SETTINGS = {
   ...Object.fromEntries(
     GAINS.map(([name, letter]) => [`weights.state.${name}`, weight(letter, WEIGHTS[name], `weights.${name}`)]),
@@ -44,7 +44,7 @@ const complex = (eigenvalue) => {
   return im === 0 ? number(re) : `${number(re)} ${im < 0 ? '\u2212' : '+'} ${number(Math.abs(im))} i`;
 };
 
-/** @param {{page: import('../settings.js').Page, open?: boolean}} props `open` while somebody sees it */
+/** @param {{page: PanelPage, open?: boolean}} props `open` while somebody sees it */
 export function Design({ page, open = true }) {
   const { values, field } = useSettings(page, 'design', SETTINGS);
   const path = requestOf('v1/controllers', page.query, values);
@@ -67,7 +67,7 @@ const readGains = readCurves(
   ({ factor, modulus }) => `gain × ${number(Number(factor))}   max |λ| ${number(Number(modulus), 5)}`,
 );
 
-/** @param {{found: [Controller, SVGSVGElement], path: string, use: false | import('../settings.js').Page['take']}} props */
+/** @param {{found: [Controller, SVGSVGElement], path: string, use: false | PanelPage['take']}} props */
 function Law({ found: [answer, figure], path, use }) {
   const { gain, eigenvalues, open_loop: free, spectral_radius: radius, bounces_per_decade: decade, regions } = answer;
   const [margin] = answer.margins;

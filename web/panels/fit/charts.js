@@ -12,7 +12,6 @@ import { matchByNumber, matchByTime } from '../measured/match.js';
 import { COMPARED, QUANTITIES, nameOf, shownOf } from '../measured/read.js';
 import { Choice, Folded, NumberField, Row, Table } from '../parts.js';
 
-/** @import { Range } from '../../charts/axes.js' */
 /** @import { Column, Compared, Measured, Reading } from '../measured/read.js' */
 /** @import { Match, Simulated } from '../measured/match.js' */
 /** @typedef {(value: number) => number} Scale px of a value */
@@ -22,7 +21,7 @@ import { Choice, Folded, NumberField, Row, Table } from '../parts.js';
  * @typedef {object} Strip
  * @property {string} name
  * @property {number} height px
- * @property {Range} range
+ * @property {Interval} range
  * @property {number[]} ticks
  * @property {number} [zero] the tick with a stronger line
  * @property {number} [band] half the width of a band around 0
@@ -36,7 +35,7 @@ const [LEFT, RIGHT, TOP, BETWEEN, BELOW] = [58, 12, 24, 20, 34];
 /**
  * @param {HTMLElement} box
  * @param {object} what
- * @param {Range} what.along
+ * @param {Interval} what.along
  * @param {string} what.name of the axis along
  * @param {boolean} [what.whole] its ticks are whole numbers
  * @param {Strip[]} what.strips
@@ -126,7 +125,7 @@ function stripOf(rows, quantity, half) {
   return { name: `δ${nameOf(quantity)}`, height: STRIP, range, ticks: ticks(range, 2), zero: 0, band, marks };
 }
 
-/** A strip of bounces without a pair. @param {import('../../charts/axes.js').Range} along @param {number[]} missed @param {number[]} extra @returns {Strip} */
+/** A strip of bounces without a pair. @param {Interval} along @param {number[]} missed @param {number[]} extra @returns {Strip} */
 const unpairedStrip = (along, missed, extra) => ({
   name: 'missed ○, extra ×',
   height: LANE,
@@ -198,7 +197,7 @@ const listed = (all) =>
 const clocks = (offset) =>
   Math.abs(offset) < 100 ? `${fixed(Math.abs(offset) * 1e3, 1)}\u202fms` : `${fixed(Math.abs(offset), 3)}\u202fs`;
 
-/** The bounces of a run in columns, to be matched. @param {import('contract').Trajectory['impacts']} impacts @returns {Simulated | null} */
+/** The bounces of a run in columns, to be matched. @param {Trajectory['impacts']} impacts @returns {Simulated | null} */
 function simulatedOf(impacts) {
   const column = (/** @type {string} */ name) =>
     impacts.t.map((_, index) => Number(/** @type {Record<string, any>} */ (impacts)[name]?.[index] ?? NaN));
@@ -285,7 +284,7 @@ const fittedOf = ({ residuals: { row, ...residuals } }, rows, quantity) =>
     value: rows[place - 1][quantity] - (quantity === 't' ? 0 : (residuals[quantity][index] ?? NaN)),
   }));
 
-/** @param {{page: import('../settings.js').Page, reading: Reading, fit: import('contract').Fit | null}} props `fit` whose values are in use */
+/** @param {{page: PanelPage, reading: Reading, fit: import('contract').Fit | null}} props `fit` whose values are in use */
 export function Overlay({ page, reading, fit }) {
   const [by, matchBy] = useState('time');
   const [first, begin] = useState(/** @type {number | null} */ (null));

@@ -3,8 +3,6 @@
 import { get } from '../../api/client.js';
 import { number, quantity } from '../../dom/numbers.js';
 
-/** @import { Field } from '../../api/scene-fields.js' */
-
 /** Impacts of the run; the camera begins at the third. */
 const [IMPACTS, BEFORE] = [63, 2];
 /** Fewer show nothing. */

@@ -7,9 +7,7 @@ import { COLUMNS, QUANTITIES } from '../measured/read.js';
 import { sign } from '../parts.js';
 import { controlsOf, readSettings } from '../settings.js';
 
-/** @import { Field, Scene } from '../../api/scene-fields.js' */
 /** @import { Column } from '../measured/read.js' */
-/** @import { Page, Setting } from '../settings.js' */
 /** A field with the value at which the search begins. @typedef {{field: Field, value: number | null}} Unknown */
 /** Words on what is wrong, by the place at which they stand. @typedef {Record<string, string>} Faults */
 
@@ -78,7 +76,7 @@ const settingsOf = (items, scene) =>
     ]),
   ]);
 
-/** The settings of a fit with their controls, and the broken parts of the address. @param {Page} page */
+/** The settings of a fit with their controls, and the broken parts of the address. @param {PanelPage} page */
 export function readFit(page) {
   const { link, fields, scene } = page;
   const items = eligible(fields);
@@ -106,7 +104,7 @@ export function readFit(page) {
   return { items, unknown, given, broken, settings, control };
 }
 
-/** @typedef {{page: Page, settings: ReturnType<typeof readFit>, faults: Faults}} Props */
+/** @typedef {{page: PanelPage, settings: ReturnType<typeof readFit>, faults: Faults}} Props */
 
 /** The list of fields to choose from, with a search: each with its box, and with its first value where it is chosen. @param {Props} props */
 export function UnknownFields({ page: { scene, part }, settings: { items, unknown, control }, faults }) {

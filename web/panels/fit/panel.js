@@ -17,10 +17,8 @@ import { exampleOf } from './example.js';
 import { Deviations, UnknownFields, readFit } from './fields.js';
 
 /** @import { FitRequest as Request, Fit, FitEstimate as Estimate } from 'contract' */
-/** @import { Page } from '../settings.js' */
 /** @import { Faults } from './fields.js' */
 /** @import { Measured, Column } from '../measured/read.js' */
-/** @import { Tone } from '../parts.js' */
 
 /** The convergence of a fit. @typedef {{begun_ms: number, points: import('./charts.js').Point[]}} Curve */
 /** An answer with its convergence, and with what stood in the page when it was asked for. @typedef {Answer & Curve & {asked: Standing}} Shown */
@@ -43,7 +41,7 @@ const countsOf = (impacts) =>
     ).filter(([, count]) => count > 0),
   );
 
-/** @param {Page} page @param {Measured[]} impacts @param {boolean} numbered @param {ReturnType<typeof readFit>} settings @returns {Request} */
+/** @param {PanelPage} page @param {Measured[]} impacts @param {boolean} numbered @param {ReturnType<typeof readFit>} settings @returns {Request} */
 function requestOf(page, impacts, numbered, { unknown, given }) {
   const columns = [...countsOf(impacts).keys()];
   const of = (/** @type {(column: Column) => unknown} */ values, /** @type {Column[]} */ some) =>
@@ -66,7 +64,7 @@ function requestOf(page, impacts, numbered, { unknown, given }) {
 
 /**
  * A refusal in words at the fields and columns that it names, the rest under `''`.
- * @param {import('../../api/client.js').Problem} problem
+ * @param {Problem} problem
  * @param {Request} request
  * @param {number[]} lines of the file
  */
@@ -95,7 +93,7 @@ function faultsOf(problem, { unknown, measured }, lines) {
   return Object.fromEntries(Object.entries(told).map(([place, all]) => [place, shortened(place, all)]));
 }
 
-/** @param {{page: Page, told?: (words: string, holds: boolean | null) => void}} props `told` hears of the result in a line; null for one that is neither good nor bad */
+/** @param {{page: PanelPage, told?: (words: string, holds: boolean | null) => void}} props `told` hears of the result in a line; null for one that is neither good nor bad */
 export function Fit({ page, told }) {
   const file = useMeasured();
   const { heads, reading } = file.content;

@@ -21,12 +21,12 @@ const GROWTH = 1.5;
 /** Impacts that it is asked for at most: the answer has them all. */
 const MOST = 20_000;
 
-const COLUMNS = /** @type {import('../../run/impacts.js').Column[]} */ (['n', ...Object.keys(QUANTITIES)]);
+const COLUMNS = /** @type {Column[]} */ (['n', ...Object.keys(QUANTITIES)]);
 const HEAD = COLUMNS.map((column) => (column === 'n' ? 'n' : quantityOf(column).name));
 
 /**
  * @typedef {object} Parts
- * @property {import('../../run/run.js').Run} run
+ * @property {Run} run
  * @property {() => URLSearchParams | null} query of the run with what was done to it
  * @property {() => void} save saves all impacts as CSV
  */
@@ -48,7 +48,7 @@ function useDemand({ run, query }, near) {
   if (near && !early) asked.current = { query: of, n };
   const path = `v1/trajectories?${asked.current.query}&bounces=`;
   const answered = useAnswer(of && asked.current.n > 0 ? path + asked.current.n : null);
-  /** @type {import('contract').Trajectory | null} */
+  /** @type {Trajectory | null} */
   const answer = answered.of?.startsWith(path) ? answered.answer : null;
   // That of a run before this one may be further.
   return answer && answer.impacts.n.length <= n ? answer : null;

@@ -27,7 +27,7 @@ const HEAD = ['Model', 'asked for by', 'ns/bounce', 'it ends', 'against the one 
 /** @param {string} name */
 const spaced = (name) => name.replaceAll('_', ' ');
 
-/** @param {{page: import('../settings.js').Page}} props */
+/** @param {{page: PanelPage}} props */
 export function LadderOf({ page }) {
   const { values, field } = useSettings(page, 'ladder', SETTINGS);
   const asked = useAnswer(requestOf('v1/ladder', page.query, values));
@@ -39,7 +39,7 @@ export function LadderOf({ page }) {
   </div>`;
 }
 
-/** @param {{answer: Ladder, path: string, fields: import('../settings.js').Page['fields']}} props */
+/** @param {{answer: Ladder, path: string, fields: PanelPage['fields']}} props */
 function Rungs({ answer: { rungs, enough, reason }, path, fields }) {
   const title = (/** @type {string} */ name) => fields.find(({ field }) => field === name)?.title ?? inWords(name);
   return html`<p role="status"><strong>Enough for this scene: ${spaced(enough)}.</strong> ${sentence(reason)}</p>

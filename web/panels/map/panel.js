@@ -27,7 +27,6 @@ import { Legend, Sample, cellWords, decimalsOf, labelOf, mapWords } from './word
 
 /** @import { Grid } from './grid.js' */
 /** @import { Settings, Side, Sides } from './settings.js' */
-/** @typedef {import('../../charts/axes.js').Range} Range */
 /** @typedef {{x: number, y: number}} Values of the two fields */
 /** The drawn cells, the request for them, and the settings with the finest columns wanted. @typedef {{grid: Grid, request: URLSearchParams, settings: Settings}} Shown */
 
@@ -44,10 +43,10 @@ function partOf({ field }, low, high) {
   return { field, from, to };
 }
 
-/** @param {Range} range @param {number} value */
+/** @param {Interval} range @param {number} value */
 const shareOf = ({ low, high }, value) => (value - low) / (high - low);
 
-/** @param {Range} range @param {number} share */
+/** @param {Interval} range @param {number} share */
 const valueAt = ({ low, high }, share) => low + share * (high - low);
 
 /** The low end of a half of the map around a share of it. @param {number} share */
@@ -66,14 +65,14 @@ const styleOf = ({ low, high }) => ({
 
 /**
  * Asks for a map when its settings or the scene have changed, as long as it is in sight.
- * @param {import('../settings.js').Page} page
+ * @param {PanelPage} page
  * @param {Settings} settings
  * @param {boolean} near
  */
 function useMap({ query, link }, settings, near) {
   const task = useTask('Computing', rowWords);
   const [shown, show] = useState(/** @type {Shown | null} */ (null));
-  const [errors, blame] = useState(/** @type {import('contract').ProblemError[]} */ ([]));
+  const [errors, blame] = useState(/** @type {ProblemError[]} */ ([]));
   /** The request made last, and the parts of the address then. */
   const asked = useRef(/** @type {{request: string, parts: string} | null} */ (null));
   const request = query ? String(requestQuery(settings, query)) : '';
@@ -116,7 +115,7 @@ function useMap({ query, link }, settings, near) {
   return { task, shown, errors, ask };
 }
 
-/** @param {{page: import('../settings.js').Page}} props */
+/** @param {{page: PanelPage}} props */
 export function StabilityMap({ page }) {
   const map = readMap(page);
   const { settings, usual, broken } = map;

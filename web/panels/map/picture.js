@@ -10,7 +10,6 @@ import { axisOf } from './words.js';
 
 /** @import { Grid } from './grid.js' */
 /** @import { Settings } from './settings.js' */
-/** @import { Frame } from '../../charts/axes.js' */
 
 /** Room around the cells for the axes, px; the style sheet has it too, for `.map-frame`. */
 const ROOM = { left: 52, right: 14, top: 26, bottom: 40 };

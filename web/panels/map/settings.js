@@ -10,9 +10,6 @@ import { CATCHES, CatchFields, inUse } from '../catch/settings.js';
 import { NumberField } from '../parts.js';
 import { controlsOf, faultOf, numberOf, otherFaults, readSettings, whole, within } from '../settings.js';
 
-/** @import { Field } from '../../api/scene-fields.js' */
-/** @import { Page } from '../settings.js' */
-
 /** A field with its ends. @typedef {{field: Field, from: number, to: number}} Side */
 /** @typedef {{x: Side, y: Side}} Sides */
 /** The sides, and values by their names in the request. @typedef {Sides & {quantity: string, bounces: number, columns: number} & Record<string, any>} Settings */
@@ -48,7 +45,7 @@ export const isOfCatches = (quantity) => QUANTITIES[quantity].catches === true;
 /** @param {number} columns */
 export const rowsOf = (columns) => (columns * 2) / 3;
 
-/** The settings of a map of a quantity, but for its sides. @param {string} quantity @returns {Record<string, import('../settings.js').Setting>} */
+/** The settings of a map of a quantity, but for its sides. @param {string} quantity @returns {Record<string, Setting>} */
 const tableOf = (quantity) => ({
   quantity: {
     label: 'Colour',
@@ -100,7 +97,7 @@ const sidesOf = (fields) => fields.filter(({ kind }) => kind === 'number');
 export const kept = (value, { minimum, maximum }) =>
   Math.min(maximum ?? Infinity, Math.max(minimum ?? -Infinity, value));
 
-/** The usual sides of a map around a scene: in steps of a fifth they reach as far as it. @param {Pick<Page, 'fields' | 'scene'>} page @returns {Sides} */
+/** The usual sides of a map around a scene: in steps of a fifth they reach as far as it. @param {Pick<PanelPage, 'fields' | 'scene'>} page @returns {Sides} */
 function usualSides({ fields, scene: { table, body, release } }) {
   const side = (/** @type {typeof GAIN} */ { path, from, to }, value = from) => {
     const step = (to - from) / 5;
@@ -117,7 +114,7 @@ function usualSides({ fields, scene: { table, body, release } }) {
   };
 }
 
-/** A side of an address. @param {'x' | 'y'} name @param {Page} page @param {Side} usual @param {import('../settings.js').Broken} broken @returns {Side} */
+/** A side of an address. @param {'x' | 'y'} name @param {PanelPage} page @param {Side} usual @param {Broken} broken @returns {Side} */
 function readSide(name, { fields, link }, usual, broken) {
   const parts = partsOf(name).filter((part) => link.has(part));
   if (parts.length === 0) return usual;
@@ -136,7 +133,7 @@ function readSide(name, { fields, link }, usual, broken) {
 /** The parts of the address that are about a side. @param {'x' | 'y'} name */
 const partsOf = (name) => ['parameter', 'from', 'to'].map((key) => `map.${name}.${key}`);
 
-/** The settings of a map from the address, with what it usually shows of this scene. @param {Page} page */
+/** The settings of a map from the address, with what it usually shows of this scene. @param {PanelPage} page */
 export function readMap(page) {
   const asked = page.link.get('map.quantity') ?? '';
   const table = tableOf(Object.hasOwn(QUANTITIES, asked) ? asked : USUAL);
@@ -203,7 +200,7 @@ export function outlineQuery(request) {
   return query;
 }
 
-/** @typedef {{page: import('../settings.js').Page, map: ReturnType<typeof readMap>, errors: import('contract').ProblemError[], turn: (sides: Sides) => void}} Props */
+/** @typedef {{page: PanelPage, map: ReturnType<typeof readMap>, errors: ProblemError[], turn: (sides: Sides) => void}} Props */
 
 // The controls, with their errors beside them.
 

@@ -45,7 +45,7 @@ const spread = ({ spread_ns_per_bounce: told }) => (told ? `${number(told[0])} t
 
 /** @typedef {{answer: Precision, pictures: Record<string, string>, request: string, scene: string}} Shown */
 
-/** @param {{page: import('../settings.js').Page}} props */
+/** @param {{page: PanelPage}} props */
 export function SpeedAgainstAccuracy({ page }) {
   const { values, field } = useSettings(page, 'precision', SETTINGS);
   const task = useTask('Measuring', 'parts');

@@ -12,14 +12,13 @@ import { Folded, Form, NO_SCENE, Numbers, Row, Table, sentence, words } from '..
 import { requestOf, useSettings, whole } from '../settings.js';
 import { sizeWords } from '../verdict/facts.js';
 
-/** @import { Scene } from '../../api/scene-fields.js' */
 /** @import { Ensemble } from 'contract' */
 
 const QUANTILES = /** @type {const} */ (['q05', 'q25', 'q50', 'q75', 'q95']);
 /** @type {Record<string, string>} */
 const READINGS = { strike: 'It strikes early or late', plan: 'It carries out the plan for a wrong time' };
 /** The last two are noise for a scene that has none. */
-/** @type {Record<string, import('../settings.js').Setting>} */
+/** @type {Record<string, Setting>} */
 const SETTINGS = {
   runs: whole('Runs', 200, 20_000),
   bounces: whole('Bounces', 400, 100_000, 'impacts'),
@@ -41,7 +40,7 @@ const percent = (share) => {
   return (near === 0 || near === 100) && share > 0 && share < 1 ? fixed(100 * share, 1) : fixed(near, 0);
 };
 
-/** The noise of a scene in words; '' where it has none. @param {Pick<import('../settings.js').Page, 'fields' | 'scene'>} page */
+/** The noise of a scene in words; '' where it has none. @param {Pick<PanelPage, 'fields' | 'scene'>} page */
 function noiseOf({ fields, scene }) {
   const parts = fields
     .filter(({ field }) => /^noise\.\w+_sd$/.test(field) && valueAt(scene, field) > 0)
@@ -53,7 +52,7 @@ function noiseOf({ fields, scene }) {
 
 /**
  * @param {object} props
- * @param {import('../settings.js').Page} props.page
+ * @param {PanelPage} props.page
  * @param {boolean} [props.open] somebody sees it
  * @param {(words: string) => void} [props.told] hears of the result in a line
  */

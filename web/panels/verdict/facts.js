@@ -6,7 +6,7 @@ import { capitalized } from '../../dom/typeset.js';
 import { angles } from '../../dom/units.js';
 import { rangeOf, reasonOf } from './words.js';
 
-/** @import { Stability, BudgetError } from 'contract' */
+/** @import { BudgetError } from 'contract' */
 /** @typedef {NonNullable<Stability['budget']>} Budget */
 /** @typedef {NonNullable<BudgetError['below']>} Limit */
 

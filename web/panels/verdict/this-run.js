@@ -8,12 +8,10 @@ import { html, render } from '../../vendor/preact/preact.js';
 import { brief } from '../parts.js';
 import { endedAs, fallInContact, reasonOf } from './words.js';
 
-/** @import { RunState } from '../../run/run-state.js' */
-
 /** Least time between two writings of the numbers of a run that goes on, ms. */
 const WRITTEN_MS = 250;
 
-/** The last thing that was done to a run up to an impact, as in “, after your kick at 7”. @param {RunState} run @param {number} until @param {import('../../api/scene-fields.js').Field[]} fields */
+/** The last thing that was done to a run up to an impact, as in “, after your kick at 7”. @param {RunState} run @param {number} until @param {Field[]} fields */
 function doneTo({ interventions }, until, fields) {
   const last = interventions.findLast(({ impact }) => impact <= until);
   if (!last) return '';
@@ -28,7 +26,7 @@ function doneTo({ interventions }, until, fields) {
 /**
  * The run in a line: the fact, and what it came after.
  * @param {RunState} run
- * @param {import('../../api/scene-fields.js').Field[]} fields
+ * @param {Field[]} fields
  * @returns {[fact: string, after: string]}
  */
 export function runWords(run, fields) {
@@ -70,7 +68,7 @@ export class ThisRun {
     document.addEventListener(UNITS, () => this.#draw());
   }
 
-  /** @param {RunState} run @param {import('../../api/scene-fields.js').Field[]} fields @returns {[fact: string, after: string]} the run in a line */
+  /** @param {RunState} run @param {Field[]} fields @returns {[fact: string, after: string]} the run in a line */
   show(run, fields) {
     const words = runWords(run, fields);
     this.#run = run;
@@ -114,7 +112,7 @@ export class ThisRun {
     );
   }
 
-  /** @param {import('../../run/impacts.js').Impacts} impacts */
+  /** @param {Impacts} impacts */
   #count(impacts) {
     if (impacts.end < this.#extent.end) this.#extent = { ...NOWHERE };
     const extent = this.#extent;

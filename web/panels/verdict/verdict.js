@@ -10,10 +10,6 @@ import { html, render, useState } from '../../vendor/preact/preact.js';
 import { Headline, Numbers, Spoken, brief, sign } from '../parts.js';
 import { endedAs, plainly, toneOf } from './words.js';
 
-/** @import { Judged } from '../card.js' */
-/** @import { Result } from '../parts.js' */
-/** @import { Stability } from 'contract' */
-
 /**
  * @typedef {object} State
  * @property {(Judged & {measure: Measure}) | null} shown the verdict on the page, with the way to ask for more
@@ -131,7 +127,7 @@ function headlineOf(answer) {
 /** A sentence of the server. @param {{text: string, class: string}} props */
 const Said = ({ text, class: kind }) => html`<p class=${kind}>${brief(capitalized(plainly(text)))}</p>`;
 
-/** @param {import('../card.js').Judged & {measure: Measure}} props */
+/** @param {Judged & {measure: Measure}} props */
 function Answer({ answer, scene, measure }) {
   const { verdict, agree, model, notes, nonlinear } = answer;
   const headline = headlineOf(answer);

@@ -44,16 +44,12 @@ const FALLS = {
   too_long: ['could not be followed', 'its motion in contact is too long to compute'],
 };
 
-/**
- * The deed of a body that fell in contact, as in “stopped bouncing and fell over”, and the reason; null if it did not.
- * @param {import('contract').Outcome & {contact?: import('contract').HoldEnd}} outcome of the connection, with its end in contact
- */
+/** The deed of a body that fell in contact, as in “stopped bouncing and fell over”, and the reason; null if it did not. @param {Outcome} outcome */
 export function fallInContact({ contact }) {
   const [deed, reason] = (contact && FALLS[contact.kind]) ?? [];
   return deed ? { deed, reason } : null;
 }
 
-/** @import { Stability } from 'contract' */
 /** A verdict and what it rests on. @typedef {Pick<Stability, 'verdict' | 'nonlinear' | 'chaos'>} Judgement */
 /** @typedef {'stable' | 'beyond' | 'unstable'} Tone */
 
