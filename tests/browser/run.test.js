@@ -33,6 +33,7 @@ test('case 1 runs, its impacts arrive, and a gain beyond the critical one turns 
   assert.ok((await ink(page, '#plane-velocity', '--series-0')) > 20, 'the velocity plane has dots');
   assert.ok((await ink(page, '#energy', '--series-0')) > 20, 'the energy plot has dots');
   const dial = page.locator('#circle svg.figure');
+  await dial.waitFor();
   assert.ok((await dial.locator('circle').count()) >= 4, 'the circle has its eigenvalues');
   assert.ok((await ink(page, '#scene-frame', '--accent')) > 200, 'the scene has its table');
   await changeUnderWay(page);

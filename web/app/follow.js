@@ -29,12 +29,12 @@ const verdicts = new Follower(async (/** @type {Page} */ page, signal, newest) =
     const answer = await get(`v1/stability?${scene}`, signal);
     if (signal.aborted) return;
     page.form?.blame([]);
-    page.circle?.show(answer);
     page.view.learn(answer.derived);
     for (const plot of page.plots) plot.redraw();
     page.circle?.figure.element.classList.remove('stale');
     const judged = { answer, scene };
     page.judged = judged;
+    page.circle?.show(judged);
     await page.verdict?.show(judged, (more) => get(`v1/stability?${scene}&${more}`), newest());
     if (newest()) tellMore(page);
     byId('build').textContent = server.build;

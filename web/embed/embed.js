@@ -87,7 +87,7 @@ function watch(viewOf, { link, query }) {
 async function eigenvalues({ query }) {
   const circle = new EigenvalueCircle();
   main.append(circle.figure.element);
-  circle.show(await get(`v1/stability?${query}`));
+  circle.show({ answer: await get(`v1/stability?${query}`), scene: query });
 }
 
 /** @param {Entry} entry @param {Place} place */

@@ -92,7 +92,7 @@ function bringCharts(page) {
     run.watch({ struck: plot.struck, cleared: () => plot.clear() });
   }
   page.circle = new EigenvalueCircle();
-  if (page.judged) page.circle.show(page.judged.answer);
+  if (page.judged) page.circle.show(page.judged);
   for (const one of [...page.plots, page.circle]) {
     const { figure } = one;
     byId('charts').append(figure.element);
