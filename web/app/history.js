@@ -3,7 +3,7 @@
 
 import { valueAt } from '../api/scene-fields.js';
 import { told } from '../api/settings.js';
-import { TYPED_IN, byId, h, pressedIn } from '../dom/elements.js';
+import { TYPED_IN, byId, pressedIn } from '../dom/elements.js';
 import { restoreState } from './scenes.js';
 
 /** A state, and the edit that came after it: the path of a field, or words. @typedef {{state: PageState, edit: string}} Entry */
@@ -34,7 +34,7 @@ export function bringHistory(page) {
   let closing;
   /** @type {number | undefined} */
   let fading;
-  const said = h('p', { id: 'undone', class: 'undone', role: 'status' });
+  const said = byId('undone');
   const fieldOf = (/** @type {string} */ edit) => page.fields.find(({ field }) => field === edit);
 
   /** @returns {PageState} */
@@ -99,7 +99,6 @@ export function bringHistory(page) {
     show();
   };
 
-  document.body.append(said);
   byId('undo').addEventListener('click', () => go(undo, redo));
   byId('redo').addEventListener('click', () => go(redo, undo));
   // A press begins another edit, of the same slider too.

@@ -15,16 +15,12 @@ const ACTION = {
   ended: 'Run again',
 };
 
-/** Makes the buttons of the run, and hears of its news. @param {Page} page */
+/** Brings the buttons of the run, and hears of its news. @param {Page} page */
 export function watchRun(page) {
   const { run } = page;
-  const button = (/** @type {string} */ id, /** @type {string} */ words, /** @type {() => void} */ click) =>
-    h('button', { type: 'button', id, click }, words);
-  const first = button('run', 'Run', () => page.toggle());
-  first.className = 'primary';
-  byId('controls').append(first);
-  const buttons = [button('step', 'Step', () => page.step()), button('restart', 'Restart', () => page.restart())];
-  byId('timeline').append(h('div', { class: 'buttons' }, ...buttons));
+  byId('run').onclick = () => page.toggle();
+  byId('step').onclick = () => page.step();
+  byId('restart').onclick = () => page.restart();
   let { replay } = run;
   run.watch({
     changed: () => {

@@ -45,9 +45,7 @@ function usualOf(name) {
 export function bringSliders(page) {
   // Beside elements that others have made.
   const root = h('div', { class: 'contents' });
-  const exact = h('div', { class: 'contents' });
   byId('controls').append(root);
-  byId('exact').append(exact);
   /** The speed as it was drawn last, and the place of its slider, which a hand may have moved since. */
   let speed = NaN;
   let place = 0;
@@ -127,7 +125,7 @@ export function bringSliders(page) {
           changed=${(/** @type {number} */ size) => {
             by = size;
           }} />`,
-      exact,
+      byId('kicks'),
     );
   };
 

@@ -1,21 +1,10 @@
 // The symbols of the paper's Fig. 1, each drawn where it belongs: l, ρ, θ, α, β and n.
 
 import { paced } from '../dom/debounce.js';
-import { byId, h } from '../dom/elements.js';
+import { byId } from '../dom/elements.js';
 import { fixedQuantity } from '../dom/numbers.js';
 import { derivedOf } from '../physics/body.js';
 import { remember, remembered } from '../api/remembered.js';
-
-/** The symbols in the order of the picture, with what they mean. @type {[string, string][]} */
-const MEANINGS = [
-  ['l', 'from the centre of gravity to the contact point'],
-  ['ρ', 'radius of gyration: half masses at the two marks on the rod would turn like it'],
-  ['θ', 'angle of the rod from upright, positive to the left'],
-  ['α', 'tilt of the table from level, positive to the left'],
-  ['β', 'angle from the table’s normal to the rod, θ − α'],
-  ['n', 'normal of the table, along which it strikes'],
-  ['P', 'impulse of a strike, along n without friction'],
-];
 
 const STORED = 'equipoise.symbols';
 /** The spoken values follow the picture at most so often, ms. */
@@ -107,9 +96,9 @@ function drawSymbols({ stage, scene, pose, table, half, struck }) {
   if (rho !== null) dimension('ρ', rhoPx);
 }
 
-/** Offers the symbols at their button, and explains the picture. @param {import('./scene-view.js').SceneView} view */
+/** Offers the symbols at their button. @param {import('./scene-view.js').SceneView} view */
 export function bringSymbols(view) {
-  const words = h('p', { id: 'symbols-words', class: 'unseen' });
+  const words = byId('symbols-words');
   const button = byId('symbols');
   const isOn = () => button.getAttribute('aria-pressed') === 'true';
   const speak = paced(SPOKEN_MS, (/** @type {Drawn} */ drawn) => {
@@ -127,21 +116,5 @@ export function bringSymbols(view) {
     drawSymbols(drawn);
     speak(drawn);
   });
-  byId('scene-frame').append(words);
-  byId('panel-why').append(aboutPicture());
   show(remembered(STORED, false));
 }
-
-const aboutPicture = () =>
-  h(
-    'details',
-    { id: 'about-picture', class: 'about-picture' },
-    h('summary', {}, 'About this picture'),
-    h(
-      'p',
-      {},
-      'The rod flies in closed form, on the server’s clock. The table is known at its strikes; between them it is drawn on the smoothest way. ' +
-        'Drag the rod by its middle to move it and by an end to tilt it; let go to release it. Before a release the faint path shows its first flights.',
-    ),
-    h('dl', {}, ...MEANINGS.map(([name, meaning]) => h('div', {}, h('dt', {}, name), h('dd', {}, meaning)))),
-  );

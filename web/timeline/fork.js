@@ -6,7 +6,7 @@ import { Follower } from '../api/latest-request.js';
 import { valueAt } from '../api/scene-fields.js';
 import { sceneQuery } from '../api/scene-query.js';
 import { GAIN } from '../app/page.js';
-import { byId, h } from '../dom/elements.js';
+import { byId } from '../dom/elements.js';
 import { fixed, number } from '../dom/numbers.js';
 import { sliderRange, sliderStep } from '../form/sliders.js';
 import { sign } from '../panels/parts.js';
@@ -37,14 +37,8 @@ export function bringFork(page, field, timeline, others) {
   let gain = 1;
   /** The ends of the slider and its step. */
   let slider = [0, 2, 0.01];
-  const open = h(
-    'button',
-    { type: 'button', id: 'fork', 'aria-controls': 'fork-box', click: () => (at ? close() : begin()) },
-    'What if from here',
-  );
-  const root = h('div', { class: 'contents' });
-  byId('exact').append(open);
-  byId('timeline').append(root);
+  const open = byId('fork', HTMLButtonElement);
+  open.onclick = () => (at ? close() : begin());
 
   /** The gain of the strike after the shown time; undefined with another law, and before the first impact. */
   const gainNow = () => {
@@ -76,7 +70,7 @@ export function bringFork(page, field, timeline, others) {
       <p id="fork-told" role="status">${told}</p>
       <button type="button" id="fork-close" onClick=${() => close()}>Close</button>
     </div>`;
-    render(at && box, root);
+    render(at && box, byId('what-if'));
   };
 
   const begin = () => {

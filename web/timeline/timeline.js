@@ -5,7 +5,7 @@ import { drawMark } from '../charts/marks.js';
 import { KEY_STEPS } from '../charts/readable/chart-reader.js';
 import { CanvasView, invalidate } from '../charts/surface.js';
 import { drags } from '../dom/drag.js';
-import { byId, h } from '../dom/elements.js';
+import { byId } from '../dom/elements.js';
 import { fixed, quantity, unbroken } from '../dom/numbers.js';
 import { VELOCITIES } from '../run/interventions.js';
 
@@ -88,22 +88,10 @@ export function bringTimeline(page) {
   let drawn_ms = null;
   let told_ms = -Infinity;
   let spoken_ms = -Infinity;
-  const bar = h('div', {
-    id: 'scrub',
-    class: 'scrub',
-    role: 'slider',
-    tabindex: 0,
-    'aria-label': 'Time of the run',
-    'aria-describedby': 'timeline-moments',
-    'aria-valuenow': 0,
-  });
+  const bar = byId('scrub');
   const view = new CanvasView(bar, 1);
-  const back = h('button', { type: 'button', id: 'step-back', click: () => step(-1) }, 'Back');
-  const comeBack = () => (run.past === null ? replayFall() : toNow());
-  const now = h('button', { type: 'button', id: 'to-now', click: comeBack });
-  const told = h('output', { id: 'timeline-told', class: 'told', 'aria-live': 'off' });
-  const from = h('span', { id: 'timeline-from', class: 'muted' });
-  const moments = h('p', { id: 'timeline-moments', class: 'unseen' });
+  const back = byId('step-back', HTMLButtonElement);
+  const [now, told, from] = ['to-now', 'timeline-told', 'timeline-from'].map((id) => byId(id));
 
   /** The first time that can be shown: the release, as long as its impacts are kept. */
   const begin = () => (impacts.end === 0 || impacts.at('n', impacts.begin) === 1 ? 0 : impacts.at('t', impacts.begin));
@@ -286,7 +274,7 @@ export function bringTimeline(page) {
 
   const changed = () => {
     marks = marksOf(run, page.fields);
-    moments.textContent = marks.map(({ n, words }) => `Bounce ${n}: ${words}`).join('. ');
+    byId('timeline-moments').textContent = marks.map(({ n, words }) => `Bounce ${n}: ${words}`).join('. ');
     refresh();
   };
 
@@ -314,12 +302,8 @@ export function bringTimeline(page) {
       dragged = null;
     },
   });
-  byId('step').before(back);
-  byId('timeline').append(
-    h('div', { class: 'scrubbing' }, bar, now),
-    h('p', { class: 'timeline-words' }, told, from),
-    moments,
-  );
+  back.onclick = () => step(-1);
+  now.onclick = () => (run.past === null ? replayFall() : toNow());
   run.watch({
     changed,
     struck: () => {

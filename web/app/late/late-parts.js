@@ -66,7 +66,7 @@ export async function bringLateParts(page) {
     () => page.updateAddressSoon(),
     (id, dropped) => brokenLinkNotice(`link-${id}`, dropped),
   );
-  panels.join('brush', bringInteraction(byId('impacts-bar'), page));
+  panels.join('brush', bringInteraction(page));
   bringGrab(page);
   bringSymbols(view);
   bringImpacts({ run, query: () => page.playedQuery, save: () => saveCsv(page) });

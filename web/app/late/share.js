@@ -16,24 +16,26 @@ export function saveCsv(page) {
   save(path && `${path}&format=csv`, 'equipoise-impacts.csv');
 }
 
-/** The entries of the Share menu. @param {Page} page */
+/** Brings the entries of the Share menu. @param {Page} page */
 export function bringShare(page) {
   const { view, run } = page;
   const menu = byId('share-menu');
-  /** An entry, which closes the menu. @param {string} id @param {string} words @param {() => void} act */
-  const entry = (id, words, act) => {
-    const click = () => {
+  const copies = (/** @type {string} */ id, /** @type {'replayAddress' | 'liveAddress'} */ which) => {
+    const button = byId(id);
+    button.onclick = () => {
+      page.updateAddress();
+      void copy(button, page[which]);
+    };
+  };
+  /** An entry that closes the menu. @param {string} id @param {() => void} act */
+  const saves = (id, act) => {
+    byId(id).onclick = () => {
       menu.hidePopover();
       byId('share-open').focus();
       act();
     };
-    return h('button', { type: 'button', id, click }, words);
   };
-  const link = (/** @type {'replayAddress' | 'liveAddress'} */ which) => (/** @type {Event} */ event) => {
-    page.updateAddress();
-    void copy(/** @type {HTMLElement} */ (event.currentTarget), page[which]);
-  };
-  const saved = async (/** @type {'svg' | 'png'} */ format) =>
+  const picture = async (/** @type {'svg' | 'png'} */ format) =>
     (await import('../../export/capture.js')).savePicture(view, 'Scene', `equipoise-scene.${format}`);
   const clip = async () => {
     if (run.phase !== 'running') page.toggle();
@@ -44,16 +46,14 @@ export function bringShare(page) {
     const played = page.playedQuery;
     save(played && `v1/previews?${played}&format=png`, 'equipoise-preview.png');
   };
-  const records = 'MediaRecorder' in globalThis && 'captureStream' in HTMLCanvasElement.prototype;
-  byId('share').addEventListener('click', link('replayAddress'));
-  menu.append(
-    h('button', { type: 'button', id: 'share-live', click: link('liveAddress') }, 'Copy link to join live'),
-    records ? entry('save-clip', 'Save a clip of the scene', () => void clip()) : '',
-    entry('save-png', 'Scene as PNG', () => void saved('png')),
-    entry('save-svg', 'Scene as SVG', () => void saved('svg')),
-    entry('save-card', 'Picture for a post, 1200 × 630', card),
-    entry('save-csv', 'Bounces as CSV', () => saveCsv(page)),
-  );
+  copies('share', 'replayAddress');
+  copies('share-live', 'liveAddress');
+  byId('save-clip').hidden = !('MediaRecorder' in globalThis && 'captureStream' in HTMLCanvasElement.prototype);
+  saves('save-clip', () => void clip());
+  saves('save-png', () => void picture('png'));
+  saves('save-svg', () => void picture('svg'));
+  saves('save-card', card);
+  saves('save-csv', () => saveCsv(page));
 }
 
 /**

@@ -3,7 +3,7 @@
 import { Problem, get } from '../../api/client.js';
 import { LatestRequest } from '../../api/latest-request.js';
 import { launch } from '../../app/scenes.js';
-import { h, pressedIn } from '../../dom/elements.js';
+import { byId, h, pressedIn } from '../../dom/elements.js';
 import { contactDistance } from '../../physics/body.js';
 import { within } from '../../physics/first-impact.js';
 import { Selection } from '../../run/selection.js';
@@ -11,36 +11,28 @@ import { recordedRun } from '../../timeline/others.js';
 import { invalidate } from '../surface.js';
 import { listen } from './plot-pointer.js';
 
-const BY_POINTER = 'Drag over a plot to select bounces; click in a plane to place a release there.';
-const BY_KEYS =
-  'Left and right go from bounce to bounce, with Shift they select; Enter offers a release whose first bounce is that one, a second Enter releases it; Escape drops it and clears the selection.';
-
-/** @param {HTMLElement} bar over the plots @param {Page} page @returns {Neighbour} */
-export function bringInteraction(bar, page) {
+/** @param {Page} page @returns {Neighbour} */
+export function bringInteraction(page) {
   const { run, view, plots } = page;
   const { impacts } = run;
   const selection = new Selection(impacts);
-  const told = h('span', { id: 'brush-told' }, BY_POINTER);
-  const drop = h(
-    'button',
-    { type: 'button', id: 'brush-clear', hidden: true, click: () => selection.set([]) },
-    'Clear',
-  );
-  // Spoken when keys move or a selection is made; a pointer's way over a chart is not.
-  const spoken = h('p', { class: 'unseen', role: 'status', id: 'impacts-spoken' });
-  bar.append(told, drop, h('p', { class: 'unseen', id: 'impacts-hint' }, BY_KEYS), spoken);
+  const told = byId('brush-told');
+  const [byPointer, byKeys] = [told, byId('impacts-hint')].map(({ textContent }) => textContent);
+  const drop = byId('brush-clear');
+  drop.onclick = () => selection.set([]);
   /** True while keys go to one of the plots. */
   let keyed = false;
   const words = {
     draw: () => {
       drop.hidden = !selection.active;
-      const now = selection.active ? selection.words : keyed ? BY_KEYS : BY_POINTER;
+      const now = selection.active ? selection.words : keyed ? byKeys : byPointer;
       if (told.textContent !== now) told.textContent = now;
       return false;
     },
   };
-  const say = (/** @type {string} */ said) => {
-    spoken.textContent = said;
+  /** Speaks when keys move or a selection is made; a pointer's way over a chart is not spoken. @param {string} said */
+  const say = (said) => {
+    byId('impacts-spoken').textContent = said;
   };
   const point = (/** @type {number | null} */ place) => {
     for (const one of plots) one.point(place);
