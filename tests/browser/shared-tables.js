@@ -14,11 +14,12 @@ function part(path, pattern) {
   return found[1];
 }
 
+/** The colours from the darkest on, six hexadecimal digits each. */
 function cividis() {
   const path = 'server/charts/draw/colour.rs';
   const digits = part(path, /const TABLE: &str = "\\\n([^"]*)"/).replace(/[\s\\]/g, '');
-  const lines = digits.match(/.{1,96}/g).join('\n');
-  return `${note(path)}/** The colours from the darkest on, six hexadecimal digits each. */\nexport const TABLE = \`\n${lines}\n\`.replaceAll('\\n', '');\n`;
+  const lines = digits.match(/.{1,96}/g).map((line) => `  "${line.match(/.{6}/g).join('", "')}"`);
+  return `[\n${lines.join(',\n')}\n]\n`;
 }
 
 /** The page's colours for those of the server's pictures; a colour that is not listed stays as it is. */
@@ -50,7 +51,7 @@ function figureColours() {
   return `${note(path).replace('// ', '/* ').trimEnd()} */\n${rules.join('')}`;
 }
 
-/** The words for each ending but that of a run that goes through, from the headline of a run. */
+/** Verb and reason for each ending but that of a run that goes through, from the headline of a run. */
 function endings() {
   const path = 'server/api/shared/outcome.rs';
   const arms = part(path, /\npub fn headline\([^{]*\{([\s\S]*?)\n\}/);
@@ -64,15 +65,15 @@ function endings() {
   ];
   const rows = words.map(([, variant, verb, reason]) => {
     const kind = variant.replace(/\B[A-Z]/g, '_$&').toLowerCase();
-    return `  ${kind}: { verb: '${verb}', reason: '${reason}' },\n`;
+    return `  "${kind}": ${JSON.stringify({ verb, reason })}`;
   });
   if (rows.length < 13) throw new Error(`${path} has ${rows.length} endings with words`);
-  return `${note(path)}/** Verb and reason, by ending. @type {Record<string, {verb: string, reason: string}>} */\nexport const ENDINGS = {\n${rows.join('')}};\n`;
+  return `{\n${rows.join(',\n')}\n}\n`;
 }
 
 for (const [path, text] of [
-  ['web/run/generated/endings.js', endings()],
-  ['web/charts/generated/cividis-table.js', cividis()],
+  ['web/run/generated/endings.json', endings()],
+  ['web/charts/generated/cividis.json', cividis()],
   ['web/charts/generated/figure-colours.css', figureColours()],
 ]) {
   if (!process.argv.includes('--check')) writeFileSync(new URL(path, root), text);

@@ -182,7 +182,7 @@ export class Page extends TypedScene {
     return whole(this.#query(true));
   }
 
-  /** Releases the typed scene. @param {Iterable<[string, string]>} [deeds] what is done to its run, as in its address */
+  /** Releases the typed scene. @param {Iterable<string[]>} [deeds] what is done to its run, as in its address */
   start(deeds = []) {
     const query = this.typedQuery;
     if (!query) return this.showFault();

@@ -7,7 +7,7 @@ import { titlesOf } from '../api/settings.js';
 import { byId, h } from '../dom/elements.js';
 import { brokenLinkNotice } from '../dom/notices.js';
 import { prose } from '../dom/typeset.js';
-import { captionOf } from '../play/stories.js';
+import STORIES from '../play/stories.json' with { type: 'json' };
 import { interventionsOf } from '../run/interventions.js';
 import { readLink } from './link.js';
 
@@ -25,7 +25,8 @@ function nameScene({ typed = {}, chosen: one, fields, chooser }, back) {
   chooser.value = one?.name ?? '';
   document.title = one ? `${plain(one.title)}${other.length > 0 ? ', changed' : ''} · equipoise` : 'equipoise';
   const changed = `Changed from the case: ${titlesOf(other, 3)}. `;
-  const words = other.length > 0 ? changed : one ? (captionOf(one.name) ?? one.shows) : 'A scene of your own.';
+  const story = STORIES.find(({ preset }) => preset === one?.name);
+  const words = other.length > 0 ? changed : (story?.caption ?? one?.shows ?? 'A scene of your own.');
   // A button that is being pressed has to stay.
   if (shows.dataset.words === words) return;
   shows.dataset.words = words;

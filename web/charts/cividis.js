@@ -3,17 +3,13 @@
 // J. R. Nuñez, C. R. Anderton, R. S. Renslow: Optimizing colormaps with consideration for color vision deficiency to enable
 // accurate interpretation of scientific data. PLoS ONE 13 (2018) e0199239.
 
-import { TABLE } from './generated/cividis-table.js';
-
-const COLOURS = 256;
+import COLOURS from './generated/cividis.json' with { type: 'json' };
+import { pixel } from './theme.js';
 
 /** Some of them, as a background. */
-export const GRADIENT = `linear-gradient(90deg, ${(TABLE.match(/.{6}/g) ?? []).filter((_, index) => index % 15 === 0).map((colour) => `#${colour}`)})`;
+export const GRADIENT = `linear-gradient(90deg, ${COLOURS.filter((_, index) => index % 15 === 0).map((colour) => `#${colour}`)})`;
 
 /** All colours, from the darkest on, as pixels of an ImageData. */
-export const PIXELS = Uint32Array.from({ length: COLOURS }, (_, index) => {
-  const at = 6 * index;
-  const [r, g, b] = [0, 2, 4].map((byte) => parseInt(TABLE.slice(at + byte, at + byte + 2), 16));
-  const pixel = new Uint8ClampedArray([r, g, b, 255]);
-  return new Uint32Array(pixel.buffer)[0];
-});
+export const PIXELS = Uint32Array.from(COLOURS, (colour) =>
+  pixel([0, 2, 4].map((at) => parseInt(colour.slice(at, at + 2), 16))),
+);

@@ -1,35 +1,10 @@
 // Sliders for fields: range and step, and a slider that stays where it was when a finger only scrolls past it.
 
 import { shownFactor, shownValue } from '../dom/units.js';
+import RANGES from './slider-ranges.json' with { type: 'json' };
 
-// The first range of a slider. The fields' own ranges are too wide to aim in; a typed value widens the slider.
-/** @type {Record<string, [number, number]>} */
-const COMFORTABLE = {
-  'table.tilt_gain': [0.8, 2],
-  'table.energy_gain': [0, 1],
-  'table.target_height': [0.14, 0.5],
-  'body.contact_distance': [0.02, 0.4],
-  'body.radius_of_gyration': [0.02, 0.4],
-  'release.height': [0.1, 0.6],
-  'release.theta': [-0.6, 0.6],
-  'release.theta_dot': [-3, 3],
-  'release.x': [-1, 1],
-  'release.x_dot': [-1, 1],
-  'release.y_dot': [-2, 2],
-  gravity: [1, 20],
-  incline: [0.1, 1.5708],
-  'contact.friction': [0, 1],
-  'noise.timing_sd': [0, 0.05],
-  'noise.angle_sd': [0, 0.1],
-  'table.feedback.x': [-1, 1],
-  'table.feedback.theta': [-2, 2],
-  'table.feedback.x_dot': [-1, 1],
-  'table.feedback.theta_dot': [-1, 1],
-  'table.limits.tilt': [0, 1.57],
-  'table.limits.tilt_rate': [0, 20],
-  'table.limits.speed': [0, 2],
-  'table.limits.stroke': [0, 0.5],
-};
+/** The first range of a slider. The fields' own ranges are too wide to aim in; a typed value widens the slider. @type {Record<string, number[]>} */
+const COMFORTABLE = RANGES;
 
 /** A step of 1, 2 or 5 that parts the span into some two hundred. @param {number} span */
 function step(span) {

@@ -1,22 +1,9 @@
 // Addresses of what stood in tabs of the first page and has a place of its own now.
 
-/** Pages and places of tabs, and of panels by the beginning of their parts of the address. @type {Record<string, [string, string]>} */
-const PLACES = {
-  paper: ['paper', 'reading'],
-  limits: ['paper', 'gallery'],
-  accuracy: ['paper', 'precision'],
-  precision: ['paper', 'precision'],
-  models: ['paper', 'ladder'],
-  ladder: ['paper', 'ladder'],
-  noise: ['rig', 'noise'],
-  survival: ['rig', 'noise'],
-  control: ['rig', 'controller'],
-  design: ['rig', 'controller'],
-  measured: ['rig', 'measurements'],
-  fit: ['rig', 'measurements'],
-  api: ['rig', 'watch'],
-  calls: ['rig', 'watch'],
-};
+import MOVED from './moved.json' with { type: 'json' };
+
+/** Pages and places of tabs, and of panels by the beginning of their parts of the address. @type {Record<string, string[]>} */
+const PLACES = MOVED;
 
 /** Goes where the address of this page leads now. False if it leads here. @param {string} search */
 export function go(search) {

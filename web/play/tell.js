@@ -1,14 +1,12 @@
-// Tells the stories: shows their scene, does to its run what belongs to them, and tells how a run ended.
+// Tells the stories, each a scene with a caption and, for some, what is done to its run: shows their scene, does to its run what belongs to them, and tells how a run ended.
 
 import { choose } from '../app/scenes.js';
 import { byId, h } from '../dom/elements.js';
 import { reasonOf } from '../panels/verdict/words.js';
 import { runWords } from '../panels/verdict/this-run.js';
-import { STORIES } from './stories.js';
+import STORIES from './stories.json' with { type: 'json' };
 
-/** @typedef {import('./stories.js').Story} Story */
-
-/** @param {Page} page @param {Story} story */
+/** @param {Page} page @param {typeof STORIES[number]} story */
 export function tell(page, story) {
   const one = page.cases.find(({ name }) => name === story.preset);
   if (!one) return;

@@ -2,7 +2,7 @@
 
 import { remember, remembered } from '../../api/remembered.js';
 import { TYPED_IN, byId, h, pressedIn } from '../../dom/elements.js';
-import { STORIES } from '../../play/stories.js';
+import STORIES from '../../play/stories.json' with { type: 'json' };
 import { tell } from '../../play/tell.js';
 import { FASTEST, SLOWEST } from '../../run/interventions.js';
 import { saveCsv } from './share.js';

@@ -7,7 +7,7 @@ import { shownValue } from '../../dom/units.js';
 import { html } from '../../vendor/preact/preact.js';
 import { Answered, useAnswer } from '../ask.js';
 import { Picture, Savings, pictured } from '../figures.js';
-import { Term } from '../../dom/glossary.js';
+import { Term } from '../glossary.js';
 import { Folded, Row, Table, brief, useNear } from '../parts.js';
 import { requestOf } from '../settings.js';
 

@@ -5,12 +5,12 @@ import { FigureColumns } from '../../charts/readable/server-figure.js';
 import { fixedQuantity, number, quantity } from '../../dom/numbers.js';
 import { capitalized } from '../../dom/typeset.js';
 import { THROWN } from '../../physics/body.js';
-import { ENDINGS } from '../../run/generated/endings.js';
 import { html, useEffect, useLayoutEffect, useRef, useState } from '../../vendor/preact/preact.js';
 import { useAnswer } from '../ask.js';
 import { Loads, Picture, Savings, pictured } from '../figures.js';
 import { Form, NO_SCENE, Numbers, Row, Table, brief, words } from '../parts.js';
 import { otherFaults, refusalOf, requestOf, useSettings } from '../settings.js';
+import { ENDINGS } from '../verdict/words.js';
 import { CATCH, CatchFields, described, inUse, namesOf } from './settings.js';
 
 /** @import { Catch, CatchOutcome as Outcome } from 'contract' */

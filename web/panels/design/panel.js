@@ -5,7 +5,7 @@ import { number, quantity } from '../../dom/numbers.js';
 import { html } from '../../vendor/preact/preact.js';
 import { Answered, useAnswer } from '../ask.js';
 import { Picture, Savings, pictured } from '../figures.js';
-import { Term } from '../../dom/glossary.js';
+import { Term } from '../glossary.js';
 import { Folded, NO_SCENE, Numbers, Row, Table, sentence, sign } from '../parts.js';
 import { requestOf, useSettings } from '../settings.js';
 import { GAINS } from '../verdict/facts.js';

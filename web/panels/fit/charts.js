@@ -10,6 +10,7 @@ import { useAnswer } from '../ask.js';
 import { Chart } from '../figures.js';
 import { matchByNumber, matchByTime } from '../measured/match.js';
 import { COMPARED, QUANTITIES, nameOf, shownOf } from '../measured/read.js';
+import WORDS from './words.json' with { type: 'json' };
 import { Choice, Folded, NumberField, Row, Table } from '../parts.js';
 
 /** @import { Column, Compared, Measured, Reading } from '../measured/read.js' */
@@ -386,15 +387,7 @@ function Apart({ found: { simulated, match }, reading: { impacts, lines }, child
 /** A step with a residual. @typedef {Step & {residual: number}} Point */
 
 /** @type {Record<Step['stage'], string>} */
-const STAGES = {
-  numbers: 'numbers of the bounces',
-  starts: 'start',
-  short_windows: 'short windows',
-  longer_windows: 'longer windows',
-  outliers: 'outliers',
-  beside: 'values beside the best',
-  verdict: 'verdict',
-};
+const STAGES = WORDS.stages;
 /** Room above and below the curve, as a factor. */
 const ROOM = 2;
 /** The least residual that is shown before there are other searches than tries, as a share of the greatest. */

@@ -14,6 +14,7 @@ import { useWhole } from '../settings.js';
 import { verdictOf } from '../verdict/words.js';
 import { Convergence, Overlay, Residuals, stepWords } from './charts.js';
 import { exampleOf } from './example.js';
+import WORDS from './words.json' with { type: 'json' };
 import { Deviations, UnknownFields, readFit } from './fields.js';
 
 /** @import { FitRequest as Request, Fit, FitEstimate as Estimate } from 'contract' */
@@ -244,64 +245,27 @@ function Data({ file, fault, note, makeExample }) {
 
 // The answer of a fit in words, bars and tables: its judgement, estimates, correlation, notes, verdict and margins.
 
-/** Judgements of a fit, with remedies for those that the data reject. @type {Record<Fit['quality']['kind'], [tone: Tone, words: string, ...remedies: string[]]>} */
-const QUALITIES = {
-  good: ['stable', 'The model explains the data'],
-  deviations_too_large: ['stable', 'The model explains the data, and the given deviations are too large'],
-  not_random: [
-    'beyond',
-    'The residuals are not random',
-    'The residuals have a shape: look below where they begin to lean.',
-    'Add a field that the rig may differ in, such as friction, an angle bias or a drag.',
-  ],
-  not_followed: [
-    'unstable',
-    'The model explains short stretches only',
-    'Errors of the rig grow from bounce to bounce: choose a stretch of fewer bounces, or add the noise of the table to the values.',
-    'Add a field that the rig may differ in, such as an angle bias.',
-  ],
-  not_explained: [
-    'unstable',
-    'The model does not explain the data',
-    'Add a field that the rig may differ in, such as restitution, friction or an angle bias.',
-    'See whether columns and units are right, and whether the standard deviations given are not too small.',
-  ],
-  not_converged: [
-    'unstable',
-    'No best fit was found',
-    'Begin at values nearer to those of the rig.',
-    'Ask for fewer unknown fields at once.',
-  ],
-};
-/** Judgement of a fit whose deviations are taken from its own residuals: those are as large as they are. @type {[Tone, string]} */
-const UNTESTED = ['beyond', 'The fit follows the data; given deviations would test the model'];
+/** Judgements of a fit, with remedies for those that the data reject; `untested` are deviations taken from its own residuals, which are as large as they are. @type {Record<Fit['quality']['kind'] | 'untested', {tone: Tone, words: string, remedies: string[]}>} */
+const QUALITIES = /** @type {any} */ (WORDS.qualities);
 
 /** The judgement of a fit in a line. @param {Fit} fit */
-const judgementOf = ({ quality: { kind } }) => QUALITIES[kind][1];
+const judgementOf = ({ quality: { kind } }) => QUALITIES[kind].words;
 
 /** True if intervals and margins of the fit are to be trusted. @param {Fit} fit */
-const isTrusted = ({ quality: { kind } }) => QUALITIES[kind][0] === 'stable';
+const isTrusted = ({ quality: { kind } }) => QUALITIES[kind].tone === 'stable';
 
-/** Margins in words: what lies between the scene and an end of its stable range. @type {Record<string, [string, string]>} */
-const MARGINS = {
-  'table.tilt_gain below': ['κ', 'Tilt gain above its lower end'],
-  'table.tilt_gain above': ['κ', 'Tilt gain below its critical value'],
-  'table.energy_gain below': ['κ_E', 'Energy gain above its lower end'],
-  'table.energy_gain above': ['κ_E', 'Energy gain below its upper end'],
-  'table.feedback below': ['K', 'State feedback above its lower end, as a factor'],
-  'table.feedback above': ['K', 'State feedback below its upper end, as a factor'],
-  spectral_margin: ['1 − |λ|', 'Closed loop inside the unit circle'],
-};
+/** Margins in words: what lies between the scene and an end of its stable range. @type {Record<string, {letter: string, title: string}>} */
+const MARGINS = WORDS.margins;
 
 /** All margins of a fit, each with its words. @param {Fit['stability']} stability */
 function marginsOf({ margins, spectral_margin: spectral }) {
   const ends = margins.flatMap((margin) =>
     /** @type {const} */ (['below', 'above']).flatMap((side) => {
       const { margin: value = 0, sd = null, least, most } = margin[side] ?? {};
-      return least == null || most == null ? [] : { words: MARGINS[`${margin.field} ${side}`], value, sd, least, most };
+      return least == null || most == null ? [] : { ...MARGINS[`${margin.field} ${side}`], value, sd, least, most };
     }),
   );
-  return spectral ? [...ends, { words: MARGINS.spectral_margin, ...spectral }] : ends;
+  return spectral ? [...ends, { ...MARGINS.spectral_margin, ...spectral }] : ends;
 }
 
 /** Names in the server's sentences that have a symbol. @type {Record<string, string>} */
@@ -342,8 +306,8 @@ const Judged = ({ tone, words, id, children }) =>
 
 /** The judgement and its reason. @param {Answer} answer */
 function Judgement({ fit: { quality }, request: { sd } }) {
-  const [tone, words] =
-    quality.kind === 'good' && Object.keys(sd ?? {}).length === 0 ? UNTESTED : QUALITIES[quality.kind];
+  const isUntested = quality.kind === 'good' && Object.keys(sd ?? {}).length === 0;
+  const { tone, words } = QUALITIES[isUntested ? 'untested' : quality.kind];
   return html`<${Judged} tone=${tone} words=${words}><p class="muted">${said(quality.detail)}</p><//>`;
 }
 
@@ -442,7 +406,7 @@ function Correlations({ fit: { estimates, correlation }, unknown }) {
 
 /** The fault of a fit that the data reject, in place of its estimates. @param {Answer} answer */
 const Rejected = ({ fit: { quality } }) => {
-  const [, , ...remedies] = QUALITIES[quality.kind];
+  const { remedies } = QUALITIES[quality.kind];
   return html`<${Section} id="fit-rejected" title="No values to use"><ul>${remedies.map((words) => html`<li>${words}</li>`)}</ul><//>`;
 };
 
@@ -471,7 +435,7 @@ function VerdictOnIt({ fit: { stability } }) {
       margins.length > 0 &&
       html`<ul class="fit-estimates" id="fit-margins">
         ${margins.map(
-          ({ words: [letter, title], value, sd, least, most }) =>
+          ({ letter, title, value, sd, least, most }) =>
             html`<${Measure} letter=${letter} title=${title} told=${{ value, sd, unit: '1' }} interval=${[least, most]} of="in the region"
               beside=${0} besideWords="0, the edge" room=${[0, least, most]} good=${least > 0} />`,
         )}

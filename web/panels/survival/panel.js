@@ -7,7 +7,7 @@ import { angles, shownValue } from '../../dom/units.js';
 import { html, useEffect, useMemo, useRef, useState } from '../../vendor/preact/preact.js';
 import { QUIET_MS, TaskButtons, TaskTold, useTask } from '../ask.js';
 import { Picture, Savings } from '../figures.js';
-import { Term } from '../../dom/glossary.js';
+import { Term } from '../glossary.js';
 import { Folded, Form, NO_SCENE, Numbers, Row, Table, sentence, words } from '../parts.js';
 import { requestOf, useSettings, whole } from '../settings.js';
 import { sizeWords } from '../verdict/facts.js';

@@ -4,6 +4,7 @@
 import { number } from '../../dom/numbers.js';
 import { capitalized } from '../../dom/typeset.js';
 import { angles } from '../../dom/units.js';
+import THINGS from './things.json' with { type: 'json' };
 import { rangeOf, reasonOf } from './words.js';
 
 /** @import { BudgetError } from 'contract' */
@@ -70,7 +71,7 @@ function lineOf(error, have) {
   const { field, unit, value, reference, below, above } = error;
   const thing = thingOf(field);
   const sides = [below, above].flatMap((limit, side) =>
-    limit && limit.decided_by !== 'range' ? [{ limit, side: thing.sides[side] }] : [],
+    limit && limit.decided_by !== 'range' ? [{ limit, side: side === 0 ? thing.low : thing.high }] : [],
   );
   if (sides.length === 0) return null;
   const { limit, side } = sides.reduce((near, one) => (one.limit.value < near.limit.value ? one : near));
@@ -79,7 +80,9 @@ function lineOf(error, have) {
   const told = field in have;
   const ratio = has === 0 ? Infinity : limit.value / has;
   const isNone = limit.value === 0;
-  const size = isNone ? thing.any : [sizeWords(field, limit.value, unit), side].filter(Boolean).join(' ');
+  const size = isNone
+    ? (thing.any ?? `any error of ${thing.what}`)
+    : [sizeWords(field, limit.value, unit), side].filter(Boolean).join(' ');
   return {
     error,
     thing,
@@ -121,45 +124,18 @@ export function firstLoss(budget) {
   return limit === 0 ? `${says} ends it` : `Ends when the ${says[0].toLowerCase()}${says.slice(1)}`;
 }
 
-/** For each field: the usual size in a lab, in SI units; what is mended; the sentence that the size goes on with, and its rest below and above. @type {Record<string, [number, string, string, string?, string?]>} */
-const THINGS = {
-  'contact.friction': [0.05, 'the friction', 'friction is', 'less', 'more'],
-  gravity: [0.02, 'the incline', 'gravity along the table is', 'less', 'more'],
-  'table.assumed_restitution': [
-    0.02,
-    'the restitution that the table reckons with',
-    'table reckons with a restitution',
-    'too low',
-    'too high',
-  ],
-  'body.offset': [1e-3, 'the balance of the body', 'centre of gravity is', 'too far left', 'too far right'],
-  'table.errors.angle_bias': [1e-3, 'the angle sensor', 'angle sensor reads', 'too little', 'too much'],
-  'table.errors.tilt_offset': [1e-3, 'the zero of the table', 'zero of the table is', 'too low', 'too high'],
-  'table.errors.tilt_gain': [0.01, 'the tilt of the table', 'table tilts', 'too little', 'too much'],
-  'table.errors.speed': [0.01, 'the speed of the table', 'table moves', 'too slowly', 'too fast'],
-  'table.pivot.x': [5e-3, 'the place of the pivot', 'pivot of the table is', 'too far left', 'too far right'],
-  'table.pivot.depth': [5e-3, 'the depth of the pivot', 'pivot of the table is', 'too high', 'too deep'],
-  'table.delay': [2e-3, 'the delay of the table', 'table is late by'],
-  'noise.timing_sd': [1e-3, 'the timing of the strikes', 'strikes scatter in time by'],
-  'noise.angle_sd': [1e-3, 'the noise of the angle sensor', 'angle readings scatter by'],
-  'noise.x_sd': [1e-3, 'the noise of the place', 'readings of the place scatter by'],
-  'noise.x_dot_sd': [0.01, 'the noise of ẋ', 'readings of ẋ scatter by'],
-  'noise.y_dot_sd': [0.01, 'the noise of ẏ', 'readings of ẏ scatter by'],
-  'noise.theta_dot_sd': [0.01, 'the noise of θ̇', 'readings of θ̇ scatter by'],
-  'noise.restitution_sd': [0.01, 'the scatter of restitution', 'restitution scatters by'],
-};
-
-/** The sentences where no size at all is allowed. @type {Record<string, string>} */
-const NONE_ALLOWED = { 'contact.friction': 'friction above 0', 'table.delay': 'any delay of the table' };
-
+/**
+ * An error of a rig: the usual size in a lab, in SI units; what is mended; the sentence that the size goes on with, and its rest below and
+ * above; the sentence where no size at all is allowed.
+ * @typedef {{usual: number, what: string, says: string, low?: string, high?: string, any?: string}} Thing
+ */
+/** By field. @type {Record<string, Thing>} */
+const ALL = THINGS;
 /** Fields whose errors a rig may have. */
 export const ERRORS = Object.keys(THINGS);
 
-/** The thing that a field is about; for one without words its path. @param {string} field */
-export function thingOf(field) {
-  const [usual, what, says, ...sides] = THINGS[field] ?? [0.01, field, `${field} is off by`];
-  return { usual, what, says, sides, any: NONE_ALLOWED[field] ?? `any error of ${what}` };
-}
+/** The thing that a field is about; for one without words its path. @param {string} field @returns {Thing} */
+export const thingOf = (field) => ALL[field] ?? { usual: 0.01, what: field, says: `${field} is off by` };
 
 /** Units in which sizes are typed, with their values in SI. @type {Record<string, [string, number]>} */
 const TYPED = {

@@ -2,7 +2,10 @@
 
 import { marginOf } from '../../api/answers.js';
 import { number } from '../../dom/numbers.js';
-import { ENDINGS } from '../../run/generated/endings.js';
+import TOLD from '../../run/generated/endings.json' with { type: 'json' };
+
+/** Verb and reason, by ending. @type {Record<string, {verb: string, reason: string}>} */
+export const ENDINGS = TOLD;
 
 /** The verbs of the server's headlines, told of a run that is over. @type {Record<string, string>} */
 const PAST = {

@@ -1,54 +1,10 @@
 // Explanations of the field's words and symbols: a button beside or around the word, and a note that a click or a key opens. Longer ones are in
 // docs/physics.md.
 
-import { h } from './elements.js';
-import { sign } from '../panels/parts.js';
+import { h } from '../dom/elements.js';
 import { html, render } from '../vendor/preact/preact.js';
-
-const TERMS = {
-  residue: {
-    title: 'Residue',
-    sign: 'R',
-    text: 'Greene’s residue: (2 − trace)/4 of the part of the linear map that moves the angle. From 0 to 1 the body keeps its balance.',
-  },
-  kappa: {
-    title: 'Tilt gain',
-    sign: 'κ',
-    text: 'The table tilts by κ times the angle of the body at the contact: α = κθ.',
-  },
-  'kappa-critical': {
-    title: 'Critical tilt gain',
-    sign: 'κ_c',
-    text: 'The largest tilt gain that balances. Above it an eigenvalue passes −1, and the body swings over.',
-  },
-  'spectral-radius': {
-    title: 'Spectral radius',
-    sign: 'max |λ|',
-    text: 'Largest modulus of the eigenvalues: the factor by which small deviations grow or shrink per bounce. Below 1 all of them die out.',
-  },
-  wilson: {
-    title: 'Wilson interval',
-    text: 'Range in which the true share lies with 95 % confidence, given how many runs were made. More runs make it narrower.',
-  },
-  median: { title: 'Median', text: 'Half of the runs lie below it, half above.' },
-  'half-life': {
-    title: 'Half-life',
-    text: 'Contacts in which half of the runs still going end, from the second half of the contacts.',
-  },
-  'at-risk': { title: 'At risk', text: 'Runs that reach a contact: those that have not ended before it.' },
-  lqr: {
-    title: 'Linear-quadratic regulator (LQR)',
-    text: 'The law with the least sum of weighted squares of deviations and of tilt. A larger weight makes that deviation smaller; a larger weight of the tilt makes the table calmer.',
-  },
-  riccati: {
-    title: 'Riccati equation',
-    text: 'The equation whose solution gives the best law. Its residual says how exactly it was solved; it should be tiny.',
-  },
-  'gain-margin': { title: 'Gain margin', text: 'Factors by which the whole law may be off before it no longer holds.' },
-  orbit: { title: 'Periodic orbit', text: 'A motion that repeats after a number of bounces, its period.' },
-  soft: { title: 'Soft boundary', text: 'Beyond the boundary the body settles on a small swing nearby.' },
-  hard: { title: 'Hard boundary', text: 'Beyond the boundary nothing nearby holds the body: it falls.' },
-};
+import TERMS from './glossary.json' with { type: 'json' };
+import { sign } from './parts.js';
 
 /** @typedef {keyof typeof TERMS} TermName */
 /** @typedef {{title: string, sign?: string, text: string}} Entry */
