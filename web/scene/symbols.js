@@ -34,7 +34,7 @@ function spokenSymbols({ scene, pose, table }) {
 const at = (from, turned, px) => ({ x: from.x - px * Math.sin(turned), y: from.y - px * Math.cos(turned) });
 
 /** @param {Drawn} drawn */
-function drawSymbols({ stage, scene, pose, table, half, struck }) {
+export function drawSymbols({ stage, scene, pose, table, half, struck }) {
   const { surface, metre } = stage;
   const { context } = surface;
   const { contact_distance, radius_of_gyration: rho } = derivedOf(scene);
