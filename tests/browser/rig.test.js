@@ -147,7 +147,10 @@ test('the verdict follows a slider, and one drag is one step back', async () => 
   await page.locator('#verdict .headline .told.unstable').waitFor();
   await slide(page, '#field-table-tilt_gain-slider', 1.5);
   await page.waitForFunction(() => /tilt_gain=1\.5/.test(location.search));
-  assert.match(plain(await page.locator('.drawing [role=img]').getAttribute('aria-label')), /the table tilts 0\.45 rad/);
+  assert.match(
+    plain(await page.locator('.drawing [role=img]').getAttribute('aria-label')),
+    /the table tilts 0\.45 rad/,
+  );
   await page.goBack();
   await page.waitForFunction((url) => location.href === url, before);
   assert.match(await verdict(page), /^● Yes/);

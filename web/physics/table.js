@@ -1,6 +1,6 @@
 // The table at a strike, on its way between two strikes, and while it holds the body.
 
-import { alongNormal } from '../run/impacts.js';
+import { alongNormal, lastUpTo } from '../run/impacts.js';
 import { contactDistance } from './body.js';
 
 /** @typedef {{pose: Pose, table: {x: number, y: number, alpha: number}}} Held */
@@ -86,14 +86,8 @@ export class Holds {
     const hold = this.#holds.findLast(([first]) => first.t <= t);
     // A strike after its beginning has thrown the body.
     if (!hold || struck > hold[0].t + 1e-9) return null;
-    let low = 0;
-    let high = hold.length - 1;
-    while (high - low > 1) {
-      const middle = (low + high) >> 1;
-      if (hold[middle].t <= t) low = middle;
-      else high = middle;
-    }
-    const [from, to] = [hold[low], hold[high]];
+    const at = lastUpTo((place) => hold[place].t, t, 0, hold.length - 1);
+    const [from, to] = [hold[at], hold[at + 1] ?? hold[at]];
     const span = to.t - from.t;
     const u = shareOf(from.t, to.t, t);
     const theta = cubic(from.theta, to.theta, from.theta_dot * span, to.theta_dot * span, u);

@@ -29,6 +29,17 @@ const KEPT = 1 << 16;
 /** @param {string} name */
 const kindOf = (name) => (name === 'n' ? Uint32Array : name === 'series' ? Uint8Array : Float64Array);
 
+/** The last place from `low` to `high` whose value is not beyond this one; `low` − 1 where there is none. @param {(place: number) => number} rising @param {number} value @param {number} low @param {number} high */
+export function lastUpTo(rising, value, low, high) {
+  low -= 1;
+  while (low < high) {
+    const middle = Math.ceil((low + high) / 2);
+    if (rising(middle) <= value) low = middle;
+    else high = middle - 1;
+  }
+  return low;
+}
+
 export class Impacts {
   /** Counts every impact taken in, forgotten ones included: the place of the next one. */
   end = 0;
@@ -60,13 +71,7 @@ export class Impacts {
    * @param {number} value
    */
   lastUpTo(column, value) {
-    let [low, high] = [this.begin - 1, this.end - 1];
-    while (low < high) {
-      const middle = Math.ceil((low + high) / 2);
-      if (this.at(column, middle) <= value) low = middle;
-      else high = middle - 1;
-    }
-    return low;
+    return lastUpTo((place) => this.at(column, place), value, this.begin, this.end - 1);
   }
 
   /** All that is kept of a column, for those who read much of it: a place is its index, less whole lengths. @param {Lasting} column */

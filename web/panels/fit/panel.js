@@ -245,8 +245,8 @@ function Data({ file, fault, note, makeExample }) {
 
 // The answer of a fit in words, bars and tables: its judgement, estimates, correlation, notes, verdict and margins.
 
-/** Judgements of a fit, with remedies for those that the data reject; `untested` are deviations taken from its own residuals, which are as large as they are. @type {Record<Fit['quality']['kind'] | 'untested', {tone: Tone, words: string, remedies: string[]}>} */
-const QUALITIES = /** @type {any} */ (WORDS.qualities);
+/** Judgements of a fit, with remedies for those that the data reject; `untested` are deviations taken from its own residuals, which are as large as they are. @satisfies {Record<Fit['quality']['kind'], {tone: string, words: string, remedies: string[]}>} */
+const QUALITIES = WORDS.qualities;
 
 /** The judgement of a fit in a line. @param {Fit} fit */
 const judgementOf = ({ quality: { kind } }) => QUALITIES[kind].words;

@@ -1,5 +1,7 @@
 // Pairs measured with simulated impacts by their times. The clocks of the two differ by an offset, and either may lack impacts.
 
+import { lastUpTo } from '../../run/impacts.js';
+
 /** Largest distance of a measured impact from the simulated one that it is, in flights; as in the fits of the server (`EXPLAINED` in `numbering.rs`). */
 const NEAR = 0.3;
 /** Measured impacts by which offsets are compared. */
@@ -37,17 +39,6 @@ function median(values) {
   return sorted.length % 2 === 1 ? sorted[middle] : (sorted[middle - 1] + sorted[middle]) / 2;
 }
 
-/** The last place whose value is not beyond this one; −1 if there is none. @param {ArrayLike<number>} rising @param {number} value */
-function lastUpTo(rising, value) {
-  let [low, high] = [-1, rising.length - 1];
-  while (low < high) {
-    const middle = Math.ceil((low + high) / 2);
-    if (rising[middle] <= value) low = middle;
-    else high = middle - 1;
-  }
-  return low;
-}
-
 /** The place of the impact of this number; −1 if it is not there. @param {Simulated} simulated @param {number} n */
 const placeOf = ({ t }, n) => (Number.isInteger(n) && n >= 1 && n <= t.length ? n - 1 : -1);
 
@@ -62,7 +53,7 @@ const spreads = (simulated) =>
 /** The place of the simulated impact nearest to a time, and the flight on the side of it; else the reason why there is none. @param {Simulated} simulated @param {number} t on the clock of the run, s @returns {{place: number, flight: number} | 'extra' | 'later'} */
 function nearest({ t: times, flight: last }, t) {
   const end = times.length - 1;
-  const before = lastUpTo(times, t);
+  const before = lastUpTo((place) => times[place], t, 0, end);
   const from = Math.max(0, before);
   const flight = from < end ? times[from + 1] - times[from] : last;
   const near = NEAR * flight;

@@ -3,18 +3,13 @@
 import { marginOf } from '../../api/answers.js';
 import { number } from '../../dom/numbers.js';
 import TOLD from '../../run/generated/endings.json' with { type: 'json' };
+import WORDS from './words.json' with { type: 'json' };
 
 /** Verb and reason, by ending. @type {Record<string, {verb: string, reason: string}>} */
 export const ENDINGS = TOLD;
 
 /** The verbs of the server's headlines, told of a run that is over. @type {Record<string, string>} */
-const PAST = {
-  Falls: 'fell',
-  'Comes to rest': 'stopped bouncing',
-  'Cannot be followed': 'could not be followed',
-  Caught: 'was caught',
-  'Not caught': 'was not caught',
-};
+const PAST = WORDS.past;
 
 /** The reason of an ending; it goes on after “fell at bounce 11:”. @param {string} kind */
 export const reasonOf = (kind) =>
@@ -36,56 +31,37 @@ export const plainly = (text) =>
     )
     .replace(/\b(?:this|the) run\b/g, 'a fresh release');
 
-/** The end, and the reason. @type {Partial<Record<import('contract').HoldEnd['kind'], [string, string]>>} */
-const FALLS = {
-  toppled: ['fell over', 'it tipped over'],
-  other_vertex: ['fell over', 'another corner touched the table'],
-  contact_lost: ['left the table', 'only a pull could keep its foot there'],
-  slipped: ['slipped', 'its foot slipped on the table'],
-  beyond_limits: ['was lost', 'the contact asks more of the table than its limits allow'],
-  off_table: ['left the table', 'the table ended before it'],
-  too_long: ['could not be followed', 'its motion in contact is too long to compute'],
-};
+/** The ends of a body in contact. @type {Record<string, {deed: string, reason: string}>} */
+const FALLS = WORDS.falls;
 
 /** The deed of a body that fell in contact, as in “stopped bouncing and fell over”, and the reason; null if it did not. @param {Outcome} outcome */
-export function fallInContact({ contact }) {
-  const [deed, reason] = (contact && FALLS[contact.kind]) ?? [];
-  return deed ? { deed, reason } : null;
-}
+export const fallInContact = ({ contact }) => FALLS[contact?.kind ?? ''] ?? null;
 
 /** A verdict and what it rests on. @typedef {Pick<Stability, 'verdict' | 'nonlinear' | 'chaos'>} Judgement */
 /** @typedef {'stable' | 'beyond' | 'unstable'} Tone */
 
-/** Tone, answer and reason. @type {Record<import('contract').VerdictCode, [Tone, string, string]>} */
-const WORDS = {
-  stable_in_place: ['stable', 'Yes', 'it comes to bounce in place'],
-  stable_drifting: ['stable', 'Yes', 'its swings die out, and it drifts aside'],
-  weakly_attracting: ['stable', 'Yes', 'its swings die out slowly'],
-  elliptic: ['stable', 'Yes', 'it circles upright, and neither settles nor falls'],
-  bounded_beyond_boundary: ['beyond', 'On the edge', 'it swings beyond the limit, and the swings stay bounded'],
-  weakly_unstable: ['beyond', 'On the edge', 'its swings grow slowly'],
-  random: ['beyond', 'By chance', 'noise decides, see step 6'],
-  unstable: ['unstable', 'No', 'small swings grow'],
-};
+/** @satisfies {Record<import('contract').VerdictCode, object>} */
+const VERDICTS = WORDS.verdicts;
 
 /** The row of the words on a verdict. @param {Judgement} answer */
-const rowOf = ({ verdict: { code }, chaos }) => WORDS[code === 'elliptic' && chaos?.chaotic ? 'weakly_unstable' : code];
+const rowOf = ({ verdict: { code }, chaos }) =>
+  VERDICTS[code === 'elliptic' && chaos?.chaotic ? 'weakly_unstable' : code];
 
 /** @param {Judgement} answer */
-export const toneOf = (answer) => rowOf(answer)[0];
+export const toneOf = (answer) => /** @type {Tone} */ (rowOf(answer).tone);
 
 /** The verdict in a line, and its reason alone. @param {Judgement} answer @returns {{tone: Tone, words: string, reason: string}} */
 export function verdictOf(answer) {
   const { verdict, nonlinear, chaos } = answer;
   const { kind, bounces } = nonlinear.outcome;
   const falls = kind !== 'completed' && verdict.code === 'unstable';
-  const [tone, word, usual] = rowOf(answer);
+  const { word, reason: usual } = rowOf(answer);
   const reason = falls
     ? `at bounce ${number(bounces, 7)} ${reasonOf(kind)}`
     : verdict.code === 'elliptic' && chaos?.chaotic
       ? 'it keeps up, and its motion is chaotic'
       : usual;
-  return { tone, words: `${word}: ${reason}`, reason };
+  return { tone: toneOf(answer), words: `${word}: ${reason}`, reason };
 }
 
 /** @typedef {{low: number | null, high: number | null}} Ends */
