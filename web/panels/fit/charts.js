@@ -159,7 +159,7 @@ export function Residuals({ name, label, hint = '', rows, quantities, bands = {}
     const { n, line, outlier, ...values } = rows[item];
     const told = quantities
       .filter((one) => Number.isFinite(values[one]))
-      .map((one) => `δ${QUANTITIES[one][0]} ${worded(values[one], QUANTITIES[one][1], 3)}`);
+      .map((one) => `δ${QUANTITIES[one].symbol} ${worded(values[one], QUANTITIES[one].unit, 3)}`);
     const place = [`n ${number(n, 7)}`, line && `line ${number(line, 7)}`];
     return [...place, ...told, outlier && 'a value left out'].filter(Boolean).join('   ');
   };
@@ -254,7 +254,7 @@ function drawOver(box, { rows, curve, offset, quantity, of }) {
   const values = [...seen, ...run].map(({ value }) => value);
   const most = Math.max(...values.map(Math.abs), 1e-9) * 1.1;
   const range = { low: Math.min(...values) < 0 ? -most : 0, high: Math.max(...values) > 0 ? most : 0 };
-  const [letter, unit] = QUANTITIES[quantity];
+  const { symbol, unit } = QUANTITIES[quantity];
   /** @type {Strip['marks']} */
   const marks = ({ x, y, right, top }) => {
     const at = (/** @type {Place} */ { t, value }) => `${x(t).toFixed(1)} ${y(value).toFixed(1)}`;
@@ -274,7 +274,7 @@ function drawOver(box, { rows, curve, offset, quantity, of }) {
     strips: [{ name: nameOf(quantity), height: OVER, range, ticks: ticks(range, 4), zero: 0, marks }],
     items: seen.map(({ t }) => t),
     words: (item) =>
-      `bounce ${number(seen[item].n, 7)}   t ${fixed(seen[item].t, 3)} s   ${letter} ${number(seen[item].value)} ${shownUnit(unit)}`,
+      `bounce ${number(seen[item].n, 7)}   t ${fixed(seen[item].t, 3)} s   ${symbol} ${number(seen[item].value)} ${shownUnit(unit)}`,
   });
 }
 
@@ -341,7 +341,7 @@ export function Overlay({ page, reading, fit }) {
       quantities.length > 1 &&
       html`<p><label for="overlay-shown">Show </label><${Choice} id="overlay-shown" value=${quantity} choices=${Object.fromEntries(quantities.map((one) => [one, nameOf(one)]))} changed=${choose} /></p>`
     }
-    ${quantity && isTimed && html`<${Chart} name="overlay" label=${`${QUANTITIES[quantity][0]} of ${counted(rows.length, 'measured bounce')} over that of the ${fit ? 'fit' : 'run'}`} draw=${draw} inputs=${[found, reading, quantity, fit, angles()]} hint="With keys: left and right go from bounce to bounce." />`}
+    ${quantity && isTimed && html`<${Chart} name="overlay" label=${`${QUANTITIES[quantity].symbol} of ${counted(rows.length, 'measured bounce')} over that of the ${fit ? 'fit' : 'run'}`} draw=${draw} inputs=${[found, reading, quantity, fit, angles()]} hint="With keys: left and right go from bounce to bounce." />`}
     ${apart}
   </div>`;
 }
@@ -361,8 +361,8 @@ function Apart({ found: { simulated, match }, reading: { impacts, lines }, child
   }).filter(({ count }) => count > 0);
   const spoken = sums
     .map(({ quantity, rms }) => {
-      const [letter, unit] = QUANTITIES[quantity];
-      return `${letter}: RMS ${number(shownOf(quantity, rms))} ${shownUnit(unit)}`;
+      const { symbol, unit } = QUANTITIES[quantity];
+      return `${symbol}: RMS ${number(shownOf(quantity, rms))} ${shownUnit(unit)}`;
     })
     .join('; ');
   const cells = (/** @type {(sum: typeof sums[number]) => number} */ of) =>

@@ -68,8 +68,8 @@ const settingsOf = (items, scene) =>
     ...COLUMNS.map((column) => [
       `sd.${column}`,
       {
-        label: html`of ${sign(QUANTITIES[column][0])}`,
-        unit: QUANTITIES[column][1],
+        label: html`of ${sign(QUANTITIES[column].symbol)}`,
+        unit: QUANTITIES[column].unit,
         right: (/** @type {number} */ value) => value >= LEAST && value <= GREATEST,
         must: 'a number above 0, or empty to estimate it',
       },

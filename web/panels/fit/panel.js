@@ -453,7 +453,7 @@ function FitResiduals({ fit: { residuals, sd }, lines }) {
     return { n, line, outlier: residuals.outlier[index], ...Object.fromEntries(values) };
   });
   const within = measured.map(
-    (column) => `${QUANTITIES[column][0]} within about ${quantity(sd[column], QUANTITIES[column][1], 2)}`,
+    (column) => `${QUANTITIES[column].symbol} within about ${quantity(sd[column], QUANTITIES[column].unit, 2)}`,
   );
   const outliers = rows.filter(({ outlier }) => outlier).length;
   return html`<${Section} id="fit-residuals" title="Residuals: measured less fitted">
@@ -468,8 +468,8 @@ function FitResiduals({ fit: { residuals, sd }, lines }) {
 function Facts({ fit, request: { sd: given } }) {
   const { chi_squared: chi, degrees_of_freedom: freedom, windows, iterations, sd, residuals } = fit;
   const deviations = COLUMNS.filter((column) => sd[column] !== null).map((column) => [
-    sign(`σ_${QUANTITIES[column][0]}`),
-    quantity(sd[column], QUANTITIES[column][1], 3),
+    sign(`σ_${QUANTITIES[column].symbol}`),
+    quantity(sd[column], QUANTITIES[column].unit, 3),
     column in (given ?? {}) ? 'as given' : 'estimated from the residuals',
   ]);
   return html`<${Numbers} id="fit-facts" kind="fit-wide" rows=${[

@@ -71,8 +71,8 @@ function changeWords(change, note) {
   const changed = COLUMNS.filter((name) => (change[name].difference ?? 0) > 0);
   if (changed.length === 0) return ends || 'the same in every number';
   const differences = changed.map((name) => {
-    const [letter, unit] = QUANTITIES[name];
-    return `Δ${letter} ${quantity(change[name].difference, unit, 2)}`;
+    const { symbol, unit } = QUANTITIES[name];
+    return `Δ${symbol} ${quantity(change[name].difference, unit, 2)}`;
   });
   return html`${ends}${note(differences.join(', '))}`;
 }

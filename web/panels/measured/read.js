@@ -6,40 +6,27 @@ import { parse, unitOf } from '../../dom/typed-number.js';
 import { shownFactor, shownUnit } from '../../dom/units.js';
 import { html, useRef } from '../../vendor/preact/preact.js';
 import { Choice, Row, Table, useChanges } from '../parts.js';
+import ALL_QUANTITIES from './quantities.json' with { type: 'json' };
 
-/** @typedef {'n' | 't' | 'theta' | 'x_dot' | 'y_dot' | 'theta_dot' | 'x'} Quantity */
+/** @typedef {keyof typeof QUANTITIES} Quantity */
 /** Those that a fit takes. @typedef {Exclude<Quantity, 'n'>} Column */
 /** Those that are compared with a run. @typedef {Exclude<Column, 'x'>} Compared */
 
-/** Symbol, unit, name, and heads of columns that mean it, in small letters without anything between them. @type {Record<Quantity, [symbol: string, unit: string, name: string, heads: string[]]>} */
-export const QUANTITIES = {
-  n: ['n', '1', 'number of the bounce', ['n', 'no', 'impact', 'contact', 'bounce', 'number', 'impactnumber']],
-  t: ['t', 's', 'time', ['t', 'time']],
-  theta: ['θ', 'rad', 'angle', ['theta', 'angle']],
-  x_dot: ['ẋ', 'm/s', 'velocity across', ['xdot', 'vx']],
-  y_dot: ['ẏ', 'm/s', 'velocity upwards', ['ydot', 'vy']],
-  theta_dot: ['θ̇', 'rad/s', 'angular velocity', ['thetadot', 'omega', 'angularvelocity', 'spin']],
-  x: ['x', 'm', 'place across', ['x', 'place', 'position']],
-};
-/** Units to choose from, by that of SI. @type {Record<string, string[]>} */
-const UNITS = {
-  1: [],
-  s: ['s', 'ms', 'µs'],
-  rad: ['rad', 'mrad', 'deg'],
-  m: ['m', 'cm', 'mm'],
-  'm/s': ['m/s', 'cm/s', 'mm/s'],
-  'rad/s': ['rad/s', 'mrad/s', 'deg/s', 'rpm'],
-};
+/**
+ * Symbol, unit, name, units to choose from with that of SI first, and heads of columns that mean it, in small letters without anything
+ * between them.
+ */
+export const QUANTITIES = ALL_QUANTITIES;
 
 const ALL = /** @type {Quantity[]} */ (Object.keys(QUANTITIES));
 export const COLUMNS = /** @type {Column[]} */ (ALL.filter((quantity) => quantity !== 'n'));
 export const COMPARED = /** @type {Compared[]} */ (COLUMNS.filter((quantity) => quantity !== 'x'));
 
 /** Name and shown unit of a quantity. @param {Quantity} quantity */
-export const nameOf = (quantity) => `${QUANTITIES[quantity][0]} / ${shownUnit(QUANTITIES[quantity][1])}`;
+export const nameOf = (quantity) => `${QUANTITIES[quantity].symbol} / ${shownUnit(QUANTITIES[quantity].unit)}`;
 
 /** The shown value of a quantity, without its unit. @param {Quantity} quantity @param {number} value in SI units */
-export const shownOf = (quantity, value) => value * shownFactor(QUANTITIES[quantity][1]);
+export const shownOf = (quantity, value) => value * shownFactor(QUANTITIES[quantity].unit);
 
 /** @typedef {Record<Quantity, number>} Measured in SI units; what is not there is NaN */
 
@@ -65,7 +52,7 @@ const LIMIT_IMPACTS = 20_000;
 const REMARKS = 8;
 
 /** The quantity that a name means. @param {string} name */
-const meant = (name) => ALL.find((quantity) => QUANTITIES[quantity][3].includes(plain(name)));
+const meant = (name) => ALL.find((quantity) => QUANTITIES[quantity].heads.includes(plain(name)));
 
 /** @param {string} text short enough to print */
 const shown = (text) => (text.length > 30 ? `${text.slice(0, 30)}…` : text);
@@ -91,7 +78,7 @@ const plainUnit = (unit) =>
 
 /** Value of a unit in SI; null if it is none of the quantity. @param {Quantity} quantity @param {string} unit */
 function sizeOf(quantity, unit) {
-  const own = QUANTITIES[quantity][1];
+  const own = QUANTITIES[quantity].unit;
   if (unit === '') return 1;
   if (unit === 'rpm' && own === 'rad/s') return Math.PI / 30;
   const told = unitOf(unit);
@@ -260,7 +247,7 @@ export const useMeasured = () => useChanges(measured);
 
 const CHOICES = {
   '': 'not used',
-  ...Object.fromEntries(ALL.map((one) => [one, `${QUANTITIES[one][0]}, ${QUANTITIES[one][2]}`])),
+  ...Object.fromEntries(ALL.map((one) => [one, `${QUANTITIES[one].symbol}, ${QUANTITIES[one].name}`])),
 };
 /** Columns beyond these are no table of impacts. */
 const MOST = 40;
@@ -269,7 +256,7 @@ const NAMED = 20;
 
 /** Units of a column, that of SI first, and the one that its head tells among them. @param {Head} head */
 function unitsOf({ quantity, unit }) {
-  const units = quantity ? UNITS[QUANTITIES[quantity][1]] : [];
+  const units = quantity ? QUANTITIES[quantity].units : [];
   return units.length === 0 || unit === '' || units.includes(unit) ? units : [...units, unit];
 }
 
