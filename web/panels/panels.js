@@ -1,6 +1,7 @@
 // The tabs beside the scene, and the panels in them: a panel's code is loaded when its tab is opened for the first time, and only the open tab is
 // drawn.
 
+import { byId } from '../dom/elements.js';
 import { Tabs } from '../play/tabs.js';
 import { card } from './card.js';
 import { Parts } from './settings.js';
@@ -57,23 +58,22 @@ export class Panels {
 
   /**
    * @param {HTMLElement} list of the tabs
-   * @param {HTMLElement} panels
    * @param {() => Pick<PanelPage, 'fields' | 'query' | 'scene' | 'take' | 'launch' | 'dropWith' | 'guide'>} page
    * @param {() => void} changed the address is another one
    * @param {(id: string, what: string[]) => void} dropped parts of a link that a panel could not keep
    */
-  constructor(list, panels, page, changed, dropped) {
+  constructor(list, page, changed, dropped) {
     this.#page = page;
     this.#parts.dropped = dropped;
     this.#parts.changed = () => {
       this.draw();
       changed();
     };
-    this.#tabs = new Tabs(list, panels, TABS, (_, byHand) => {
+    this.#tabs = new Tabs(list, TABS, (_, byHand) => {
       this.draw();
       if (byHand) changed();
     });
-    for (const { tab, element } of this.#cards) this.#tabs.panel(tab).append(element);
+    for (const { tab, element } of this.#cards) byId(`panel-${tab}`).append(element);
   }
 
   /** Draws the panels of the open tab. */

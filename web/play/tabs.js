@@ -1,6 +1,6 @@
 // Tabs: one panel shown at a time, arrow keys between them, the chosen one in the address.
 
-import { h } from '../dom/elements.js';
+import { byId } from '../dom/elements.js';
 import { html, render } from '../vendor/preact/preact.js';
 
 /** A quiet tab shows its button only while it is chosen: something else opens it. @typedef {{id: string, name: string, quiet?: boolean}} Tab */
@@ -8,52 +8,29 @@ import { html, render } from '../vendor/preact/preact.js';
 const stillness = matchMedia('(prefers-reduced-motion: reduce)');
 
 export class Tabs {
+  chosen = '';
   #list;
   #tabs;
-  /** @type {Map<string, HTMLElement>} */
-  #panels = new Map();
-  #chosen = '';
   #opened;
 
-  /**
-   * @param {HTMLElement} list
-   * @param {HTMLElement} panels where those stand that are not in the page yet
-   * @param {readonly Tab[]} tabs
-   * @param {(id: string, byHand: boolean) => void} opened
-   */
-  constructor(list, panels, tabs, opened) {
+  /** @param {HTMLElement} list @param {readonly Tab[]} tabs each with its panel in the page @param {(id: string, byHand: boolean) => void} opened */
+  constructor(list, tabs, opened) {
     this.#list = list;
     this.#tabs = tabs;
     this.#opened = opened;
-    for (const { id } of tabs) {
-      const attributes = { class: 'tab-panel', role: 'tabpanel', 'aria-labelledby': `tab-${id}`, tabindex: 0 };
-      const made = () => panels.appendChild(h('div', { id: `panel-${id}`, ...attributes, hidden: true }));
-      this.#panels.set(id, document.getElementById(`panel-${id}`) ?? made());
-    }
     list.addEventListener('keydown', (event) => this.#key(event));
     this.#show(tabs[0].id);
   }
 
-  get chosen() {
-    return this.#chosen;
-  }
-
-  /** @param {string} id */
-  panel(id) {
-    const panel = this.#panels.get(id);
-    if (!panel) throw new Error(`there is no tab ${id}`);
-    return panel;
-  }
-
   /** The button of the chosen tab. */
   get #button() {
-    return document.getElementById(`tab-${this.#chosen}`);
+    return document.getElementById(`tab-${this.chosen}`);
   }
 
   /** @param {KeyboardEvent} event */
   #key(event) {
-    const ids = this.#tabs.filter(({ id, quiet }) => !quiet || id === this.#chosen).map(({ id }) => id);
-    const at = ids.indexOf(this.#chosen);
+    const ids = this.#tabs.filter(({ id, quiet }) => !quiet || id === this.chosen).map(({ id }) => id);
+    const at = ids.indexOf(this.chosen);
     /** @type {Record<string, number>} */
     const places = { ArrowLeft: at - 1, ArrowRight: at + 1, Home: 0, End: ids.length - 1 };
     if (!(event.key in places) || event.ctrlKey || event.metaKey || event.altKey) return;
@@ -64,7 +41,7 @@ export class Tabs {
 
   /** Opens a tab. @param {string} id @param {boolean} [byHand] not by a link */
   choose(id, byHand = false) {
-    if (id !== this.#chosen) this.#show(id);
+    if (id !== this.chosen) this.#show(id);
     if (byHand || id !== this.#tabs[0].id) this.#button?.scrollIntoView({ block: 'nearest', inline: 'nearest' });
     this.#opened(id, byHand);
     // On a phone the tabs may be below the screen.
@@ -74,8 +51,8 @@ export class Tabs {
 
   /** @param {string} chosen */
   #show(chosen) {
-    this.#chosen = chosen;
-    for (const [id, panel] of this.#panels) panel.hidden = id !== chosen;
+    this.chosen = chosen;
+    for (const { id } of this.#tabs) byId(`panel-${id}`).hidden = id !== chosen;
     const button = (/** @type {Tab} */ { id, name, quiet }) => html`<button
       type="button"
       role="tab"
@@ -91,6 +68,6 @@ export class Tabs {
 
   /** The chosen tab for the address. */
   query() {
-    return new URLSearchParams(this.#chosen === this.#tabs[0].id ? [] : [['tab', this.#chosen]]);
+    return new URLSearchParams(this.chosen === this.#tabs[0].id ? [] : [['tab', this.chosen]]);
   }
 }

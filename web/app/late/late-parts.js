@@ -53,7 +53,6 @@ export async function bringLateParts(page) {
   const guide = guideOf(page);
   const panels = new Panels(
     byId('tabs'),
-    byId('tab-panels'),
     () => ({
       fields,
       query: page.typedQuery,
