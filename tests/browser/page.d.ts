@@ -225,6 +225,10 @@ type Judged = { answer: Stability; scene: URLSearchParams };
 interface Entry {
   /** Also the beginning of its parts of the address, and its name under `embed/`. */
   id: string;
+  /** The page that it stands in: `./` is Play. */
+  page: string;
+  /** Its tab in Play. */
+  tab?: string;
   title: string;
   about: string;
   /** It fills its place as it is, and is not opened large. */
@@ -233,8 +237,11 @@ interface Entry {
   kind?: string;
   /** Its style sheets, where they are not those of a study. */
   sheets?: string[];
-  /** Its component, which takes the page. */
-  load(): Promise<(props: any) => unknown>;
+  module: string;
+  /** A component, by its name in the module; it takes the page. */
+  component: string;
+  /** Path of an answer that it takes as well. */
+  asks?: string;
 }
 
 /** An answer that follows what is asked. */

@@ -12,11 +12,8 @@ import { byId, h } from '../dom/elements.js';
 import { brokenLinkNotice, clearNotice, connectionNotice, notice } from '../dom/notices.js';
 import { invalidate } from '../charts/surface.js';
 import { listen } from '../charts/impacts/plot-pointer.js';
-import { CHAPTERS } from '../paper/chapters.js';
-import { PANELS } from '../panels/panels.js';
-import { card } from '../panels/card.js';
+import { ENTRIES, card } from '../panels/card.js';
 import { ScenePage, begin, sceneOf } from '../panels/scene-page.js';
-import { RIG_PANELS } from '../rig/panels.js';
 
 const id = location.pathname.split('/').at(-1) ?? '';
 const main = byId('main');
@@ -92,7 +89,7 @@ async function eigenvalues({ query }) {
 
 /** @param {Entry} entry @param {Place} place */
 function panel(entry, { fields, cases, query }) {
-  const page = new ScenePage('', [entry.id], fields, cases);
+  const page = new ScenePage('', fields, cases, [entry.id]);
   page.read(location.search);
   // Another scene opens in the whole page beside it, and a dashboard has nobody to press a button.
   const beside = (/** @type {URLSearchParams} */ other) => void open(`${whole}?${other}`, '_blank', 'noopener');
@@ -119,11 +116,10 @@ function panel(entry, { fields, cases, query }) {
 const shown = new Map();
 for (const [name, viewOf] of Object.entries(VIEWS)) shown.set(name, (place) => watch(viewOf, place));
 shown.set('circle', eigenvalues);
-for (const entry of [...PANELS, ...CHAPTERS, ...Object.values(RIG_PANELS)])
-  shown.set(entry.id, (place) => panel(entry, place));
+for (const entry of ENTRIES) shown.set(entry.id, (place) => panel(entry, place));
 
 document.title = `${id} · equipoise`;
-const whole = id in RIG_PANELS ? 'rig' : './';
+const whole = ENTRIES.find((entry) => entry.id === id)?.page === 'rig' ? 'rig' : './';
 byId('whole', HTMLAnchorElement).href = `${whole}${location.search}`;
 void begin((fields, cases) => {
   const place = { fields, cases, ...sceneOf(location.search, fields, cases) };

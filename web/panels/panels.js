@@ -3,7 +3,7 @@
 
 import { byId } from '../dom/elements.js';
 import { Tabs } from '../play/tabs.js';
-import { card } from './card.js';
+import { card, entriesOf } from './card.js';
 import { Parts } from './settings.js';
 
 /** The tabs in their order; the first is open unless the address says another. @type {readonly import('../play/tabs.js').Tab[]} */
@@ -17,33 +17,7 @@ const TABS = [
 /** Tabs of older links, and where their panels stand now. @type {Readonly<Record<string, string>>} */
 const FORMER = { run: 'why', orbits: 'more', catch: 'more' };
 
-/** @type {import('./card.js').Study[]} */
-export const PANELS = [
-  {
-    id: 'map',
-    tab: 'map',
-    fills: true,
-    title: 'Which drops survive?',
-    about: '',
-    // The second has the form of the settings of a catch.
-    sheets: ['panels/map/map.css', 'panels/study.css'],
-    load: () => import('./map/panel.js').then(({ StabilityMap }) => StabilityMap),
-  },
-  {
-    id: 'catch',
-    tab: 'more',
-    title: 'Catch the body',
-    about: 'Brings this scene to rest on the table, and holds it there.',
-    load: () => import('./catch/panel.js').then(({ CatchBody }) => CatchBody),
-  },
-  {
-    id: 'branch',
-    tab: 'more',
-    title: 'Orbits of period 2',
-    about: 'What the boundary of stability gives birth to.',
-    load: () => import('./branch/panel.js').then(({ Branch }) => Branch),
-  },
-];
+const PANELS = entriesOf('./');
 
 /** The panel that a part of the address belongs to. @param {string} key */
 const ownerOf = (key) => key.split('.')[0];

@@ -8,6 +8,7 @@ import { brokenLinkNotice, notice } from '../dom/notices.js';
 import { knowTitles } from '../dom/typeset.js';
 import { followAddress, keepAngles } from '../dom/units.js';
 import { html } from '../vendor/preact/preact.js';
+import { entriesOf } from './card.js';
 import { Choice, useChanges } from './parts.js';
 import { Parts } from './settings.js';
 
@@ -47,8 +48,8 @@ export class ScenePage extends Parts {
   #path;
   #panels;
 
-  /** @param {string} path of the page @param {string[]} panels that begin their parts of its address @param {Field[]} fields @param {Case[]} cases */
-  constructor(path, panels, fields, cases) {
+  /** @param {string} path of the page @param {Field[]} fields @param {Case[]} cases @param {string[]} [panels] that begin their parts of its address */
+  constructor(path, fields, cases, panels = entriesOf(path).map(({ id }) => id)) {
     super();
     this.fields = fields;
     this.cases = cases;

@@ -1,7 +1,7 @@
 // The chapters of the paper's page: its items, its cases, and the scenes on which usual methods fail; with figures of the server, a place for the
 // reader's own scan of one, and printed values beside computed ones.
 
-import { get, wordsOf } from '../api/client.js';
+import { wordsOf } from '../api/client.js';
 import { sceneQuery } from '../api/scene-query.js';
 import { here, serverFigure } from '../charts/readable/server-figure.js';
 import { number, quantity } from '../dom/numbers.js';
@@ -240,24 +240,20 @@ function Item({ item, run }) {
 /** @param {string} section */
 const anchor = (section) => `section-${section.toLowerCase().replace(/[^a-z0-9]+/g, '-')}`;
 
-/** The items of the paper by their sections, which `listed` hears of as anchors and titles. */
-export async function items() {
-  /** @type {{items: PaperItem[]}} */
-  const { items: all } = await get('v1/paper');
-  const sections = [...new Set(all.map(({ section }) => section))];
-  const differ = all.filter(({ agrees }) => !agrees).length;
-  return (/** @type {{page: ScenePage, listed?: (sections: string[][]) => void}} */ { page, listed }) => {
-    useEffect(() => listed?.(sections.map((section) => [anchor(section), section])), []);
-    return html`<p>${all.length} items. ${differ} differ from the print, each with the reason.</p>
-      ${sections.map(
-        (section) => html`<section aria-labelledby=${anchor(section)}>
-          <h2 id=${anchor(section)}>${words(section)}</h2>
-          ${all
-            .filter((item) => item.section === section)
-            .map((item) => html`<${Item} key=${item.id} item=${item} run=${runOf(item.scene, page)} />`)}
-        </section>`,
-      )}`;
-  };
+/** The items of the paper by their sections, which `listed` hears of as anchors and titles. @param {{page: ScenePage, answer: {items: PaperItem[]}, listed?: (sections: string[][]) => void}} props */
+export function Items({ page, answer: { items }, listed }) {
+  const sections = [...new Set(items.map(({ section }) => section))];
+  const differ = items.filter(({ agrees }) => !agrees).length;
+  useEffect(() => listed?.(sections.map((section) => [anchor(section), section])), []);
+  return html`<p>${items.length} items. ${differ} differ from the print, each with the reason.</p>
+    ${sections.map(
+      (section) => html`<section aria-labelledby=${anchor(section)}>
+        <h2 id=${anchor(section)}>${words(section)}</h2>
+        ${items
+          .filter((item) => item.section === section)
+          .map((item) => html`<${Item} key=${item.id} item=${item} run=${runOf(item.scene, page)} />`)}
+      </section>`,
+    )}`;
 }
 
 /** @param {Quantity | undefined} value */
@@ -329,10 +325,6 @@ const FailureCase = ({
   </a>
 <//>`;
 
-/** Scenes on which usual methods fail. */
-export async function failures() {
-  /** @type {{items: Failure[]}} */
-  const { items: all } = await get('v1/failures');
-  return (/** @type {{page: ScenePage}} */ { page }) =>
-    all.map((one) => html`<${FailureCase} key=${one.name} failure=${one} run=${runOf(one.scene, page)} />`);
-}
+/** Scenes on which usual methods fail. @param {{page: ScenePage, answer: {items: Failure[]}}} props */
+export const Failures = ({ page, answer: { items } }) =>
+  items.map((one) => html`<${FailureCase} key=${one.name} failure=${one} run=${runOf(one.scene, page)} />`);

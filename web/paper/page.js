@@ -2,13 +2,13 @@
 
 import { arrive } from '../app/arrive.js';
 import { byId, h } from '../dom/elements.js';
-import { card } from '../panels/card.js';
+import { card, entriesOf } from '../panels/card.js';
 import { words } from '../panels/parts.js';
 import { Cases, ScenePage, begin } from '../panels/scene-page.js';
 import { html, render } from '../vendor/preact/preact.js';
-import { CHAPTERS } from './chapters.js';
 import { whenNear } from './contents.js';
 
+const CHAPTERS = entriesOf('paper');
 /** The first of the chapters that ask about one scene. */
 const SCENIC = 'precision';
 
@@ -22,8 +22,7 @@ function listContents(sections) {
 }
 
 begin((fields, cases) => {
-  const ids = CHAPTERS.map(({ id }) => id);
-  const page = new ScenePage('paper', ids, fields, cases);
+  const page = new ScenePage('paper', fields, cases);
   page.read(location.search);
   page.followHistory();
   const chapters = CHAPTERS.map((entry) => {
@@ -44,7 +43,11 @@ begin((fields, cases) => {
     html`<${Cases} page=${page} id="scene" label="The scene of the next two chapters" own="the scene of the address" />`,
     scene,
   );
-  chapters.splice(ids.indexOf(SCENIC), 0, scene);
+  chapters.splice(
+    CHAPTERS.findIndex(({ id }) => id === SCENIC),
+    0,
+    scene,
+  );
   const root = h('div', {}, ...chapters);
   byId('text').append(root);
   listContents([]);

@@ -4,7 +4,6 @@ import { setAt } from '../api/scene-fields.js';
 import { merged, parameters } from '../api/scene-query.js';
 import { brokenLinkNotice } from '../dom/notices.js';
 import { ScenePage, sceneOf } from '../panels/scene-page.js';
-import { RIG_PANELS } from './panels.js';
 
 /** Sizes that the owner has, by field: `have.table.errors.angle_bias=0.001`. */
 const HAVE = /^have\.([a-z_.]+)$/;
@@ -18,7 +17,7 @@ export class Rig extends ScenePage {
 
   /** @param {Field[]} fields @param {Case[]} cases */
   constructor(fields, cases) {
-    super('rig', Object.keys(RIG_PANELS), fields, cases);
+    super('rig', fields, cases);
   }
 
   /** @param {string} search */

@@ -18,7 +18,6 @@ import { contactDistance, derivedOf, drawable } from '../physics/body.js';
 import { drawSymbols } from '../scene/symbols.js';
 import { World } from '../scene/world.js';
 import { html, useEffect, useLayoutEffect, useRef, useState } from '../vendor/preact/preact.js';
-import { RIG_PANELS } from './panels.js';
 
 /** @import { Rig } from './rig.js' */
 /** @import { Controller as Law } from 'contract' */
@@ -539,7 +538,7 @@ function Controller({ rig, held }) {
       <p class="muted">A tilt in proportion to the angle keeps a body circling. State feedback needs its place and velocities too, and brings it to rest in place.</p>
       <details onToggle=${(/** @type {Event} */ event) => weigh(/** @type {HTMLDetailsElement} */ (event.currentTarget).open)}>
         <summary>Design it by other weights</summary>
-        ${weighed !== null && html`<${Panel} entry=${RIG_PANELS.design} page=${rig} open=${weighed && open} />`}
+        ${weighed !== null && html`<${Panel} id="design" page=${rig} open=${weighed && open} />`}
       </details>`;
   };
   return html`<${Step} n=${4} id="controller" title="Choose a controller" result=${result}>${body}<//>`;
@@ -555,7 +554,7 @@ function Measurements({ rig }) {
   const say = (/** @type {string} */ said, /** @type {boolean | null} */ holds) =>
     tell({ tone: holds === null ? 'none' : holds ? 'stable' : 'unstable', words: `${name}: ${said}` });
   return html`<${Step} n=${5} id="measurements" title="Your measurements" result=${told ?? { tone: 'none', words: words || 'Drop a CSV file anywhere on the page' }}>
-    <${Panel} entry=${RIG_PANELS.fit} page=${rig} told=${say} />
+    <${Panel} id="fit" page=${rig} told=${say} />
   <//>`;
 }
 
@@ -563,7 +562,7 @@ function Measurements({ rig }) {
 function Noise({ rig }) {
   const [words, tell] = useState('How many of many runs last when the table errs at random');
   return html`<${Step} n=${6} id="noise" title="Under noise" result=${{ tone: 'none', words }}>
-    ${(/** @type {boolean} */ open) => html`<${Panel} entry=${RIG_PANELS.survival} page=${rig} open=${open} told=${tell} />`}
+    ${(/** @type {boolean} */ open) => html`<${Panel} id="survival" page=${rig} open=${open} told=${tell} />`}
   <//>`;
 }
 
@@ -594,7 +593,7 @@ function Watch({ rig }) {
     <${Code} title="In another page" about="The rig as it runs, in a frame." code=${frame('scene', 'my rig', `?${words}`)} />
     <${Code} title="Prometheus" about="A job that asks for the verdict and its margins." code=${scrape(words)} />
     <${Code} title="Alert" about="Rules for that job: it falls, or a gain is near its limit." code=${ALERT} />
-    <div id="calls-body"><${Panel} entry=${RIG_PANELS.calls} page=${rig} /></div>
+    <div id="calls-body"><${Panel} id="calls" page=${rig} /></div>
   <//>`;
 }
 
