@@ -326,19 +326,6 @@ interface PanelPage {
   launch?(values: Record<string, number>): void;
   /** Drops the scene with these values, at the first turn of a drag and at others. */
   dropWith?(values: Record<string, number>, first: boolean): void;
-  guide?: Guide;
-}
-
-/** The table under a run that is under way: what it does on request. */
-interface Guide {
-  /** There is such a run. */
-  live(): boolean;
-  /** The table holds its body. */
-  held(): boolean;
-  /** From the contact point to the centre of gravity, m. */
-  length(): number;
-  watch(watcher: { changed(): void; problem(refusal: Refusal): void }): void;
-  catchIt(settings: Record<string, string | number>): void;
-  throwIt(apex: { height: number; theta: number }): void;
-  juggle(heights: number[]): void;
+  /** The page of Play with its run, which the panel may act on. */
+  play?: Page;
 }

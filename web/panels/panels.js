@@ -32,7 +32,7 @@ export class Panels {
 
   /**
    * @param {HTMLElement} list of the tabs
-   * @param {() => Pick<PanelPage, 'fields' | 'query' | 'scene' | 'take' | 'launch' | 'dropWith' | 'guide'>} page
+   * @param {() => Pick<PanelPage, 'fields' | 'query' | 'scene' | 'take' | 'launch' | 'dropWith' | 'play'>} page
    * @param {() => void} changed the address is another one
    * @param {(id: string, what: string[]) => void} dropped parts of a link that a panel could not keep
    */

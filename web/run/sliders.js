@@ -1,6 +1,6 @@
 // Speed, kick, catch and throw under the scene; they come after the first picture. A kick of a chosen size stands in the time line.
 
-import { catchIt, throwUp } from '../app/late/guide.js';
+import { catchIt, throwIt } from '../app/late/guide.js';
 import { byId, h } from '../dom/elements.js';
 import { number } from '../dom/numbers.js';
 import { parse } from '../dom/typed-number.js';
@@ -104,7 +104,7 @@ export function bringSliders(page) {
         <div class="acts">
           <button type="button" id="kick" disabled=${disabled} onClick=${() => kick()}>Kick</button>
           <button type="button" id="catch-it" disabled=${disabled} onClick=${guided(catchIt)}>Catch</button>
-          <button type="button" id="throw-it" disabled=${disabled} onClick=${guided(throwUp)}>Throw</button>
+          <button type="button" id="throw-it" disabled=${disabled} onClick=${guided(throwIt)}>Throw</button>
         </div>
         <p class="error" id="kick-error" role="status" />`,
       root,

@@ -12,24 +12,29 @@ function guide(page, words, message, byPanel = false) {
   page.act(words, message);
 }
 
-/** Catches the body from the next strike on. @param {Page} page */
-export const catchIt = (page) => guide(page, 'the catch', { type: 'catch' });
-
 /** True from the news of a hold on: no news follows at the moment when it begins. @param {Page} page */
-const isHeld = ({ run }) => {
+export const isHeld = ({ run }) => {
   const { scene, impacts, holds } = run;
   return run.active && scene !== null && Boolean(holds?.at(holds.until, impacts.last?.t ?? -Infinity, scene));
 };
 
 /** From the contact point to the centre of gravity, m. @param {Page} page */
-const lengthOf = ({ run, view }) => contactDistance(run.scene ?? view.drawn);
+export const lengthOf = ({ run, view }) => contactDistance(run.scene ?? view.drawn);
 
-/** A throw straight up, to the usual height. @param {Page} page */
-export const throwUp = (page) =>
-  guide(page, 'the throw', { type: 'throw', apex: { height: THROWN * lengthOf(page), theta: 0 } });
+/** Catches the body from the next strike on. @param {Page} page @param {Record<string, string | number>} [settings] of a panel */
+export const catchIt = (page, settings) => guide(page, 'the catch', { type: 'catch', ...settings }, Boolean(settings));
+
+/** Throws the body, straight up to the usual height without an apex. @param {Page} page @param {{height: number, theta: number}} [apex] of a panel */
+export const throwIt = (page, apex) =>
+  guide(
+    page,
+    'the throw',
+    { type: 'throw', apex: apex ?? { height: THROWN * lengthOf(page), theta: 0 } },
+    Boolean(apex),
+  );
 
 /** @param {Page} page @param {number[]} heights one for each strike, in turn */
-function juggle(page, heights) {
+export function juggle(page, heights) {
   const held = isHeld(page);
   if (held) guide(page, 'the juggling', { type: 'throw', apex: { height: heights[0], theta: 0 } }, true);
   else page.history?.record('the juggling');
@@ -43,22 +48,3 @@ function juggle(page, heights) {
     held ? THROWN_MS : 0,
   );
 }
-
-/** @param {Page} page @returns {Guide} */
-export const guideOf = (page) => ({
-  live: () => page.run.active,
-  held: () => isHeld(page),
-  length: () => lengthOf(page),
-  watch: ({ changed, problem }) => {
-    page.run.watch({
-      changed,
-      struck: changed,
-      problem: (told) => {
-        if (page.guidedByPanel && page.run.guided) problem(told);
-      },
-    });
-  },
-  catchIt: (settings) => guide(page, 'the catch', { type: 'catch', ...settings }, true),
-  throwIt: (apex) => guide(page, 'the throw', { type: 'throw', apex }, true),
-  juggle: (heights) => juggle(page, heights),
-});

@@ -22,7 +22,6 @@ import { bringTimeline } from '../../timeline/timeline.js';
 import { bringHistory } from '../history.js';
 import { launch, play } from '../scenes.js';
 import { GAIN } from '../page.js';
-import { guideOf } from './guide.js';
 import { listenToKeys } from './keys.js';
 import { bringSettings, dropWith } from './settings.js';
 import { bringShare, saveCsv, savesOf } from './share.js';
@@ -50,7 +49,6 @@ export async function bringLateParts(page) {
   bringEnding(page);
   bringShare(page);
   listenToKeys(page);
-  const guide = guideOf(page);
   const panels = new Panels(
     byId('tabs'),
     () => ({
@@ -60,7 +58,7 @@ export async function bringLateParts(page) {
       take: (scene) => play(page, scene),
       launch: (values) => launch(page, values),
       dropWith: (values, first) => dropWith(page, values, first),
-      guide,
+      play: page,
     }),
     () => page.updateAddressSoon(),
     (id, dropped) => brokenLinkNotice(`link-${id}`, dropped),

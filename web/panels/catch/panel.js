@@ -1,6 +1,7 @@
 // The panel that catches the body of the page's scene, tells how in words, numbers and the server's picture, and catches, throws and juggles in the
 // run under way.
 
+import { catchIt, isHeld, juggle, lengthOf, throwIt } from '../../app/late/guide.js';
 import { FigureColumns } from '../../charts/readable/server-figure.js';
 import { fixedQuantity, number, quantity } from '../../dom/numbers.js';
 import { capitalized } from '../../dom/typeset.js';
@@ -40,7 +41,7 @@ const PROMISE =
 
 /** @param {{page: PanelPage}} props */
 export function CatchBody({ page }) {
-  const { guide, query } = page;
+  const { play, query } = page;
   const [wanted, want] = useState(/** @type {string | null} */ (null));
   const asked = useAnswer(wanted, { quiet_ms: 0, ask: pictured });
   /** Refusals of what the run under way was asked for. */
@@ -84,7 +85,7 @@ export function CatchBody({ page }) {
     <div class=${`study-sheet ${fresh ? '' : 'stale'}`} id="catch-sheet" hidden=${!shown}>
       ${shown && html`<${Sheet} ...${shown} />`}
     </div>
-    ${guide && html`<${UnderWay} guide=${guide} values=${values} field=${field} refused=${refused} refuse=${refuse} />`}
+    ${play && html`<${UnderWay} play=${play} values=${values} field=${field} refused=${refused} refuse=${refuse} />`}
     <p class="study-row">
       <button type="button" id="catch-reach" onClick=${reach}>Map its reach</button>
       <span>Which releases the table catches, over angle and spin: a catch in every cell.</span>
@@ -95,24 +96,27 @@ export function CatchBody({ page }) {
 /**
  * The run under way: catch it, throw it, juggle it.
  * @param {object} props
- * @param {Guide} props.guide
+ * @param {Page} props.play
  * @param {Record<string, any>} props.values
  * @param {(name: string, hint?: string) => unknown} props.field
  * @param {ProblemError[]} props.refused
  * @param {(errors: ProblemError[]) => void} props.refuse
  */
-function UnderWay({ guide, values, field, refused, refuse }) {
-  const now = () => ({ live: guide.live(), held: guide.held(), length: guide.length() });
+function UnderWay({ play, values, field, refused, refuse }) {
+  const { run } = play;
+  const now = () => ({ live: run.active, held: isHeld(play), length: lengthOf(play) });
   const [, tell] = useState('');
-  useEffect(
-    () =>
-      guide.watch({
-        changed: () => tell(JSON.stringify(now())),
-        problem: ({ title, detail, errors }) =>
-          refuse(errors.length > 0 ? errors : [{ pointer: '', detail: detail || title }]),
-      }),
-    [],
-  );
+  useEffect(() => {
+    const changed = () => tell(JSON.stringify(now()));
+    run.watch({
+      changed,
+      struck: changed,
+      problem: ({ title, detail, errors }) => {
+        if (!play.guidedByPanel || !run.guided) return;
+        refuse(errors.length > 0 ? errors : [{ pointer: '', detail: detail || title }]);
+      },
+    });
+  }, []);
   const { live, held, length } = now();
   const usual = (/** @type {Throw} */ name) => Number((THROWS[name] * length).toPrecision(2));
   const value = (/** @type {Throw} */ name) => values[name] ?? usual(name);
@@ -121,22 +125,22 @@ function UnderWay({ guide, values, field, refused, refuse }) {
     refuse([]);
     send();
   };
-  const catchIt = act(() => guide.catchIt(inUse(values)));
-  const throwIt = act(() => guide.throwIt({ height: value('height'), theta: value('theta') }));
-  const juggle = act(() => guide.juggle([value('low'), value('high')]));
+  const catchRun = act(() => catchIt(play, inUse(values)));
+  const throwRun = act(() => throwIt(play, { height: value('height'), theta: value('theta') }));
+  const juggleRun = act(() => juggle(play, [value('low'), value('high')]));
   const said = held ? 'The table holds the body. A throw goes on from there.' : 'Acts from the next strike on.';
   return html`<fieldset class="catch-live">
     <legend>The run under way</legend>
     <p class="study-row">
-      <button type="button" id="catch-run" disabled=${!live || held} onClick=${catchIt}>Catch this run</button>
+      <button type="button" id="catch-run" disabled=${!live || held} onClick=${catchRun}>Catch this run</button>
       <span id="catch-live-told" role="status">${live || held ? said : 'No run is under way.'}</span>
     </p>
     <div class="study-row">
-      <button type="button" id="catch-throw" disabled=${!live} onClick=${throwIt}>Throw</button>
+      <button type="button" id="catch-throw" disabled=${!live} onClick=${throwRun}>Throw</button>
       ${thrown('height')} ${thrown('theta')}
     </div>
     <div class="study-row">
-      <button type="button" id="catch-juggle" disabled=${!live} onClick=${juggle}>Juggle</button>
+      <button type="button" id="catch-juggle" disabled=${!live} onClick=${juggleRun}>Juggle</button>
       ${thrown('low')} ${thrown('high')}
     </div>
     <p class="error" id="catch-live-error" role="status">${otherFaults(refused, namesOf(values))}</p>
