@@ -128,6 +128,14 @@ interface Offered {
   run: RunState | null;
 }
 
+/** Releases that clicks in a plot offer. */
+interface Releases {
+  isOfferedIn(plot: ImpactPlot): boolean;
+  startAt(plot: ImpactPlot, first: { x: number; y: number }): import('../../web/physics/first-impact.js').Start | null;
+  offer(plot: ImpactPlot, first: { x: number; y: number }): void;
+  release(): void;
+}
+
 // Body and table.
 
 /** Of the centre of gravity, m, and the angle, rad. */

@@ -24,7 +24,7 @@ import { launch, play } from '../scenes.js';
 import { GAIN } from '../page.js';
 import { listenToKeys } from './keys.js';
 import { bringSettings, dropWith } from './settings.js';
-import { bringShare, saveCsv, savesOf } from './share.js';
+import { bringShare, savesOf } from './share.js';
 
 const STYLES = [
   'play/late.css',
@@ -42,7 +42,7 @@ export async function bringLateParts(page) {
   await Promise.all(STYLES.map(styles)).catch(() => {});
   bringSettings(page);
   bringCharts(page);
-  const { view, fields, run } = page;
+  const { view, fields } = page;
   const others = bringTime(page);
   bringShell(page);
   bringPresent(bringStories(page));
@@ -66,7 +66,7 @@ export async function bringLateParts(page) {
   panels.join('brush', bringInteraction(page));
   bringGrab(page);
   bringSymbols(view);
-  bringImpacts({ run, query: () => page.playedQuery, save: () => saveCsv(page) });
+  bringImpacts(page);
   page.pins = bringPins(page, others);
   panels.join('pin', page.pins);
   panels.join('you', bringHand(page));

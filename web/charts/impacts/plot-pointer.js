@@ -9,24 +9,6 @@ import { invalidate } from '../surface.js';
 /** @typedef {import('../../run/selection.js').Selection} Selection */
 /** The action of a click at a place. @typedef {Place & {words: string, possible: boolean}} Offer */
 
-/**
- * Releases that clicks in a plot offer.
- * @typedef {object} Releases
- * @property {(plot: ImpactPlot) => boolean} isOfferedIn
- * @property {(plot: ImpactPlot, first: {x: number, y: number}) => import('../../physics/first-impact.js').Start | null} startAt
- * @property {(plot: ImpactPlot, first: {x: number, y: number}) => void} offer
- * @property {() => void} release
- */
-
-/**
- * @typedef {object} PointerParts
- * @property {Impacts} impacts
- * @property {Selection} selection
- * @property {Releases | null} releases without them nothing is released
- * @property {(place: number | null) => void} point at an impact in all plots
- * @property {(words: string) => void} say
- */
-
 /** Less than this is a click that slipped, px. */
 const SLIP = 5;
 /** An impact or a place as near as this is meant, px. */
@@ -35,7 +17,11 @@ const NEAR = 24;
 /** @param {number} value @param {number} low @param {number} size */
 const clamped = (value, low, size) => Math.min(low + size, Math.max(low, value));
 
-/** @param {ImpactPlot} plot @param {PointerParts} parts */
+/**
+ * @param {ImpactPlot} plot
+ * @param {{impacts: Impacts, selection: Selection, releases: Releases | null, point: (place: number | null) => void, say: (words: string) => void}} parts
+ * without `releases` nothing is released; `point` points at an impact in all plots
+ */
 export function listen(plot, { impacts, selection, releases, point, say }) {
   const { box } = plot.figure;
   const columns = [plot.meaning.x.column, plot.meaning.y.column];

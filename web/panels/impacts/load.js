@@ -1,6 +1,7 @@
 // The run as numbers: its newest impacts in a table to copy, and the demand on the table as the server computes it for the run up to now.
 // Both follow the run while they are in sight.
 
+import { saveCsv } from '../../app/late/share.js';
 import { copy } from '../../dom/clipboard.js';
 import { paced } from '../../dom/debounce.js';
 import { byId, h } from '../../dom/elements.js';
@@ -24,25 +25,18 @@ const MOST = 20_000;
 const COLUMNS = /** @type {Column[]} */ (['n', ...Object.keys(QUANTITIES)]);
 const HEAD = COLUMNS.map((column) => (column === 'n' ? 'n' : quantityOf(column).name));
 
-/**
- * @typedef {object} Parts
- * @property {Run} run
- * @property {() => URLSearchParams | null} query of the run with what was done to it
- * @property {() => void} save saves all impacts as CSV
- */
-
-/** @param {Parts} parts */
-export function bringImpacts(parts) {
+/** @param {Page} page */
+export function bringImpacts(page) {
   const root = h('div', { class: 'run-numbers' });
   byId('impacts-bar').after(root);
-  render(html`<${RunNumbers} ...${parts} />`, root);
+  render(html`<${RunNumbers} page=${page} />`, root);
 }
 
-/** The demand on the table, as far as the run has come. @param {Parts} parts @param {boolean} near */
-function useDemand({ run, query }, near) {
+/** The demand on the table, as far as the run has come. @param {Page} page @param {boolean} near */
+function useDemand({ run, playedQuery }, near) {
   const asked = useRef({ query: '', n: 0 });
   const n = Math.min(MOST, run.impacts.last?.n ?? 0);
-  const of = String(query() ?? '');
+  const of = String(playedQuery ?? '');
   const before = asked.current;
   const early = run.phase === 'running' && of === before.query && n >= before.n && n < GROWTH * before.n;
   if (near && !early) asked.current = { query: of, n };
@@ -61,9 +55,9 @@ const ImpactRow = ({ values }) =>
     return html`<tr>${cells.map((cell) => html`<td>${cell}</td>`)}</tr>`;
   }, [...values, angles()]);
 
-/** @param {Parts} parts */
-function RunNumbers(parts) {
-  const { run, save } = parts;
+/** @param {{page: Page}} props */
+function RunNumbers({ page }) {
+  const { run } = page;
   const { impacts } = run;
   const [place, near] = useNear();
   const [, again] = useState({});
@@ -86,7 +80,7 @@ function RunNumbers(parts) {
     const texts = places.map((at) => valuesAt(at).map((value) => (Number.isFinite(value) ? String(value) : '')));
     void copy(currentTarget, [HEAD, ...texts].map((cells) => cells.join('\t')).join('\n'));
   };
-  const answer = useDemand(parts, near);
+  const answer = useDemand(page, near);
   // A strike that a limit forbids is not among the impacts.
   const refused = run.outcome?.kind === 'beyond_limits' && run.outcome.quantity ? run.outcome : null;
   const values = { ...answer?.demand, ...(refused && { [String(refused.quantity)]: refused.value }) };
@@ -95,7 +89,7 @@ function RunNumbers(parts) {
       <div class="card-head">
         <h2 id="impacts-title">Bounces of this run</h2>
         <button type="button" id="impacts-copy" disabled=${end === 0} onClick=${copyRows}>Copy rows</button>
-        <button type="button" id="impacts-csv" disabled=${end === 0} onClick=${save}>Save all as CSV</button>
+        <button type="button" id="impacts-csv" disabled=${end === 0} onClick=${() => saveCsv(page)}>Save all as CSV</button>
       </div>
       <${Table} label="Impacts of this run, the newest first" head=${HEAD} children=${places.map((at) => html`<${ImpactRow} key=${at} values=${valuesAt(at)} />`)} />
       <p id="impacts-told" class="muted small">${end === 0 ? 'A run writes its bounces here.' : told}</p>
