@@ -287,6 +287,19 @@ interface Neighbour {
   restore?(link: URLSearchParams): string[];
 }
 
+/** The tabs beside the scene. */
+interface Panels {
+  draw(): void;
+  /** Opens a tab, or that of a panel. */
+  show(id: string): void;
+  join(id: string, neighbour: Neighbour): void;
+  /** Shows what a link asks for: its tab, else that of the first panel with a part in it. */
+  restore(link: URLSearchParams): void;
+  /** Their part of the page’s address. */
+  query(): URLSearchParams;
+  sceneChanged(): void;
+}
+
 /** Parts of an address that are wrong, with words on each, and what of them is right. */
 type Broken = [part: string, words: string, right?: string][];
 

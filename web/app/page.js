@@ -29,7 +29,7 @@ export class Page extends TypedScene {
   releasedAs = {};
   /** The panels' part of the address, until the panels are there. */
   panelLink = new URLSearchParams();
-  /** The panels below the fold; they come after the first plot. @type {import('../panels/panels.js').Panels | null} */
+  /** The panels below the fold; they come after the first plot. @type {Panels | null} */
   panels = null;
   /** The time line over the run; it comes late as well. @type {{toggle: () => boolean, step: (by: number) => boolean, toNow: () => void, replayFall: () => void} | null} */
   timeline = null;

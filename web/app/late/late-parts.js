@@ -4,11 +4,10 @@ import { EigenvalueCircle } from '../../charts/eigenvalue-circle.js';
 import { bringInteraction } from '../../charts/impacts/plot-interaction.js';
 import { anglePlane, energyPlot, velocityPlane } from '../../charts/impacts/plots.js';
 import { byId } from '../../dom/elements.js';
-import { brokenLinkNotice } from '../../dom/notices.js';
 import { enlarger } from '../../export/enlarge.js';
 import { styles } from '../../dom/styles.js';
 import { bringImpacts } from '../../panels/impacts/load.js';
-import { Panels } from '../../panels/panels.js';
+import { bringPanels } from '../../panels/panels.js';
 import { bringPins } from '../../pins/pins.js';
 import { bringHand } from '../../play/hand.js';
 import { bringPresent, bringShell } from '../../play/shell.js';
@@ -20,10 +19,9 @@ import { bringFork } from '../../timeline/fork.js';
 import { Others } from '../../timeline/others.js';
 import { bringTimeline } from '../../timeline/timeline.js';
 import { bringHistory } from '../history.js';
-import { launch, play } from '../scenes.js';
 import { GAIN } from '../page.js';
 import { listenToKeys } from './keys.js';
-import { bringSettings, dropWith } from './settings.js';
+import { bringSettings } from './settings.js';
 import { bringShare, savesOf } from './share.js';
 
 const STYLES = [
@@ -42,30 +40,16 @@ export async function bringLateParts(page) {
   await Promise.all(STYLES.map(styles)).catch(() => {});
   bringSettings(page);
   bringCharts(page);
-  const { view, fields } = page;
   const others = bringTime(page);
   bringShell(page);
   bringPresent(bringStories(page));
   bringEnding(page);
   bringShare(page);
   listenToKeys(page);
-  const panels = new Panels(
-    byId('tabs'),
-    () => ({
-      fields,
-      query: page.typedQuery,
-      scene: page.typed ?? {},
-      take: (scene) => play(page, scene),
-      launch: (values) => launch(page, values),
-      dropWith: (values, first) => dropWith(page, values, first),
-      play: page,
-    }),
-    () => page.updateAddressSoon(),
-    (id, dropped) => brokenLinkNotice(`link-${id}`, dropped),
-  );
+  const panels = bringPanels(page);
   panels.join('brush', bringInteraction(page));
   bringGrab(page);
-  bringSymbols(view);
+  bringSymbols(page.view);
   bringImpacts(page);
   page.pins = bringPins(page, others);
   panels.join('pin', page.pins);
