@@ -6,7 +6,7 @@ import { pathOf } from '../api/scene-fields.js';
 import { missing } from '../api/settings.js';
 import { byId } from '../dom/elements.js';
 import { debounce } from '../dom/debounce.js';
-import { Verdict } from '../panels/verdict/verdict.js';
+import { bringVerdict } from '../panels/verdict/verdict.js';
 import { recordedRun } from '../timeline/others.js';
 
 /** An edit counts as settled after so long without another, ms. */
@@ -99,7 +99,7 @@ const settle = debounce(QUIET_MS, hurry);
 
 /** Begins to ask for what belongs to the typed scene. @param {Page} page */
 export function beginToFollow(page) {
-  page.verdict = new Verdict(byId('verdict'), byId('verdict-more'));
+  page.verdict = bringVerdict(byId('verdict'), byId('verdict-more'));
   page.follow = (another) => {
     page.verdict?.busy(true);
     facts.cancel();

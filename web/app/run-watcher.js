@@ -95,10 +95,10 @@ async function showThisRun(page) {
   const { run } = page;
   if (!page.thisRun) {
     if (run.phase === 'idle') return;
-    const { ThisRun } = await import('../panels/verdict/this-run.js');
-    page.thisRun ??= new ThisRun(byId('this-run'));
+    const { bringThisRun } = await import('../panels/verdict/this-run.js');
+    page.thisRun ??= bringThisRun(byId('this-run'), run, page.fields);
   }
-  const [fact, after] = page.thisRun.show(run, page.fields);
+  const [fact, after] = page.thisRun();
   if (run.phase === 'ended') tell(fact + after);
   page.verdict?.ended(run.phase === 'ended' ? run.fate : null, fact);
 }

@@ -132,7 +132,7 @@ export function bringPins(page, others) {
     for (const [place, pin] of pins.entries()) {
       const { name: label, symbol, colour } = SLOTS[place];
       const { run, staged = false } = pin ?? {};
-      others.set(`pin-${place}`, run ? { run, symbol, colour, label, staged } : null);
+      others(`pin-${place}`, run ? { run, symbol, colour, label, staged } : null);
     }
     const staged = pins.findIndex((pin) => pin?.staged && pin.run);
     parting.show(pins[staged]?.run ?? null, SLOTS[staged]?.name);

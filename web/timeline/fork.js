@@ -95,7 +95,7 @@ export function bringFork(page, field, timeline, others) {
     at = null;
     draw();
     timeline.parts(null);
-    others.set('fork', null);
+    others('fork', null);
   };
 
   const close = () => {
@@ -120,7 +120,7 @@ export function bringFork(page, field, timeline, others) {
       if (at !== from) return;
       const label = `what if κ ${number(wanted)}`;
       const forked = recordedRun(answer, interventions);
-      others.set('fork', { run: forked, from: from.n, symbol: '◆', colour: 'measured', label, staged: true });
+      others('fork', { run: forked, from: from.n, symbol: '◆', colour: 'measured', label, staged: true });
       timeline.parts(from.t, answer.outcome.t);
       const { kind, bounces } = answer.outcome;
       const later = `${number(bounces - from.n, 8)} bounces`;

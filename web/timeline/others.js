@@ -47,26 +47,19 @@ export function recordedRun(answer, interventions = []) {
 
 /** A run beside the live one; where it is staged, its rod is drawn too. @typedef {Reference & {staged: boolean}} Other */
 
-/** The dots of the other runs in the planes, and their rods on the stage of the live one. */
-export class Others {
+/** Shows another run, or none, under a name. @typedef {(id: string, other: Other | null) => void} Others */
+
+/** The dots of the other runs in the planes, and their rods on the stage of the live one. @param {Page} page @returns {Others} */
+export function bringOthers({ plots, view }) {
   /** @type {Map<string, Other>} */
-  #others = new Map();
-  #page;
-
-  /** @param {Page} page */
-  constructor(page) {
-    this.#page = page;
-  }
-
-  /** @param {string} id @param {Other | null} other */
-  set(id, other) {
-    if (!other && !this.#others.has(id)) return;
-    if (other) this.#others.set(id, other);
-    else this.#others.delete(id);
-    const all = [...this.#others.values()];
-    const { plots, view } = this.#page;
+  const others = new Map();
+  return (id, other) => {
+    if (!other && !others.has(id)) return;
+    if (other) others.set(id, other);
+    else others.delete(id);
+    const all = [...others.values()];
     for (const plot of plots) plot.references(all);
     view.others = all.filter(({ staged }) => staged);
     view.redraw();
-  }
+  };
 }

@@ -16,7 +16,7 @@ import { bringSliders } from '../../run/sliders.js';
 import { bringGrab } from '../../scene/grab.js';
 import { bringSymbols } from '../../scene/symbols.js';
 import { bringFork } from '../../timeline/fork.js';
-import { Others } from '../../timeline/others.js';
+import { bringOthers } from '../../timeline/others.js';
 import { bringTimeline } from '../../timeline/timeline.js';
 import { bringHistory } from '../history.js';
 import { GAIN } from '../page.js';
@@ -88,7 +88,7 @@ function bringTime(page) {
   page.sliders = bringSliders(page);
   const timeline = bringTimeline(page);
   page.timeline = timeline;
-  const others = new Others(page);
+  const others = bringOthers(page);
   const field = page.fields.find((one) => one.field === GAIN);
   if (field) bringFork(page, field, timeline, others);
   return others;

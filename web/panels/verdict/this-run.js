@@ -49,51 +49,43 @@ export function runWords(run, fields) {
 /** Digits of the numbers of a run. */
 const DIGITS = 3;
 
-/** How far a run has gone. */
+/** How far a run has gone, impact by impact up to the place `end`. */
 const NOWHERE = { end: 0, theta: 0, alpha: 0, low: Infinity, high: -Infinity };
 
-export class ThisRun {
-  #root;
-  /** Counted impact by impact, up to the place `end`. */
-  #extent = { ...NOWHERE };
-  /** @type {RunState | null} */
-  #run = null;
-  #words = ['', ''];
-  /** Numbers that change faster cannot be read. */
-  #drawSoon = paced(WRITTEN_MS, () => this.#draw());
+/** @typedef {ReturnType<typeof bringThisRun>} ThisRun */
 
-  /** @param {HTMLElement} root */
-  constructor(root) {
-    this.#root = root;
-    document.addEventListener(UNITS, () => this.#draw());
-  }
+/** @param {HTMLElement} root @param {RunState} run @param {Field[]} fields */
+export function bringThisRun(root, run, fields) {
+  let extent = { ...NOWHERE };
+  let words = runWords(run, fields);
 
-  /** @param {RunState} run @param {Field[]} fields @returns {[fact: string, after: string]} the run in a line */
-  show(run, fields) {
-    const words = runWords(run, fields);
-    this.#run = run;
-    this.#words = words;
-    this.#count(run.impacts);
-    if (run.phase === 'running') this.#drawSoon();
-    else this.#draw();
-    return words;
-  }
+  const count = () => {
+    const { impacts } = run;
+    if (impacts.end < extent.end) extent = { ...NOWHERE };
+    for (let place = Math.max(impacts.begin, extent.end); place < impacts.end; place += 1) {
+      const x = impacts.at('x', place);
+      extent.theta = Math.max(extent.theta, Math.abs(impacts.at('theta', place)) || 0);
+      extent.alpha = Math.max(extent.alpha, Math.abs(impacts.at('alpha', place)) || 0);
+      extent.low = Math.min(extent.low, x);
+      extent.high = Math.max(extent.high, x);
+    }
+    extent.end = impacts.end;
+  };
 
-  #draw() {
-    if (!this.#run) return;
-    const { phase, outcome: last, impacts, fate } = this.#run;
-    const [fact, after] = this.#words;
+  const draw = () => {
+    const { phase, outcome: last, impacts, fate } = run;
+    const [fact, after] = words;
     const outcome = phase === 'ended' ? last : null;
     const fall = outcome && fallInContact(outcome);
     const skipped = impacts.missing > 0 ? `${number(impacts.missing, 8)} bounces were skipped over.` : '';
     const reason = outcome ? `${capitalized(reasonOf(outcome.kind))}${fall ? `; then ${fall.reason}` : ''}.` : skipped;
-    const { end, theta, alpha, low, high } = this.#extent;
+    const { end, theta, alpha, low, high } = extent;
     const rows = [
       ['Angle', `up to ${quantity(theta, 'rad', DIGITS)}`],
       ['Tilt of the table', `up to ${quantity(alpha, 'rad', DIGITS)}`],
       ['Along x', `${number(low, DIGITS)} to ${quantity(high, 'm', DIGITS)}`],
     ];
-    const extent = html`<dl class="run-extent muted">
+    const reached = html`<dl class="run-extent muted">
       ${end > 0 && rows.map(([name, told]) => html`<div><dt>${name}</dt><dd>${told}</dd></div>`)}
     </dl>`;
     render(
@@ -104,25 +96,23 @@ export class ThisRun {
           <details class="run-details" hidden=${!outcome}>
             <summary>Details</summary>
             <p class="muted">${brief(outcome ? `${capitalized(outcome.detail)}. ${skipped}` : '')}</p>
-            ${outcome && extent}
+            ${outcome && reached}
           </details>
         </div>
-        ${!outcome && extent}`,
-      this.#root,
+        ${!outcome && reached}`,
+      root,
     );
-  }
+  };
 
-  /** @param {Impacts} impacts */
-  #count(impacts) {
-    if (impacts.end < this.#extent.end) this.#extent = { ...NOWHERE };
-    const extent = this.#extent;
-    for (let place = Math.max(impacts.begin, extent.end); place < impacts.end; place += 1) {
-      const x = impacts.at('x', place);
-      extent.theta = Math.max(extent.theta, Math.abs(impacts.at('theta', place)) || 0);
-      extent.alpha = Math.max(extent.alpha, Math.abs(impacts.at('alpha', place)) || 0);
-      extent.low = Math.min(extent.low, x);
-      extent.high = Math.max(extent.high, x);
-    }
-    extent.end = impacts.end;
-  }
+  // Numbers that change faster cannot be read.
+  const drawSoon = paced(WRITTEN_MS, draw);
+  document.addEventListener(UNITS, draw);
+  /** Shows the run as it is now; gives it in a line. */
+  return () => {
+    words = runWords(run, fields);
+    count();
+    if (run.phase === 'running') drawSoon();
+    else draw();
+    return words;
+  };
 }

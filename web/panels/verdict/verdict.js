@@ -38,68 +38,56 @@ function VerdictLine({ shown, held, played, ended, facts }) {
     <${Spoken} words=${held ? `No verdict. ${held.words}` : setting ? `This setting: ${setting.words.toLowerCase()}; ${setting.term}` : ''} />`;
 }
 
-export class Verdict {
-  #root;
-  #more;
-  /** @type {State} */
-  #state = { shown: null, ended: null, played: null, held: null, facts: [] };
+/** @typedef {ReturnType<typeof bringVerdict>} Verdict */
 
-  /** @param {HTMLElement} root of the line @param {HTMLElement} more place of the evidence */
-  constructor(root, more) {
-    this.#root = root;
-    this.#more = more;
-    root.replaceChildren();
-    this.#change({});
-  }
+/** @param {HTMLElement} root of the line @param {HTMLElement} more place of the evidence */
+export function bringVerdict(root, more) {
+  /** @type {State} */
+  const state = { shown: null, ended: null, played: null, held: null, facts: [] };
 
   /** @param {Partial<State>} changes */
-  #change(changes) {
-    Object.assign(this.#state, changes);
-    this.#more.hidden = this.#state.held !== null;
-    render(html`<${VerdictLine} ...${this.#state} />`, this.#root);
-  }
+  const change = (changes) => {
+    Object.assign(state, changes);
+    more.hidden = state.held !== null;
+    render(html`<${VerdictLine} ...${state} />`, root);
+  };
 
   /** Shows the last answer anew, for another unit of angles. */
-  retell() {
-    const { shown } = this.#state;
-    if (shown) render(html`<${Answer} ...${shown} />`, this.#more);
-  }
+  const retell = () => {
+    if (state.shown) render(html`<${Answer} ...${state.shown} />`, more);
+  };
 
   /** Marks the verdict as out of date. @param {boolean} busy */
-  busy(busy) {
-    this.#root.setAttribute('aria-busy', String(busy));
-  }
+  const busy = (busy) => root.setAttribute('aria-busy', String(busy));
 
-  /** Facts that belong to the answer shown; they come later. @param {(string | null)[]} facts */
-  tell(facts) {
-    this.#change({ facts });
-  }
-
-  /** The end of the run on the screen; null while it goes on. @param {'fell' | 'kept' | 'over' | null} fate @param {string} words */
-  ended(fate, words) {
-    const ended = fate === 'fell' || fate === 'kept' ? { tone: fate, words } : null;
-    // It is called at each bounce.
-    if (ended || this.#state.ended) this.#change({ ended });
-  }
-
-  /** Words on a play with the run, in place of the verdict; null ends it. @param {string | null} words */
-  plays(words) {
-    this.#change({ played: words === null ? null : { tone: 'played', words } });
-  }
-
-  /** Tells why there is no verdict. The evidence of the last one is out of sight until there is another. @param {string} words @param {string} label of the way to mend it @param {() => void} act */
-  hold(words, label, act) {
-    this.busy(false);
-    this.#change({ held: { words, label, act } });
-  }
-
-  /** @param {Judged} judged @param {Measure} measure @param {boolean} newest false while the answer to a newer question is awaited */
-  show(judged, measure, newest) {
-    // Facts of another answer are void.
-    this.#change({ facts: [], held: null, shown: { ...judged, measure } });
-    this.retell();
-    if (newest) this.busy(false);
-  }
+  root.replaceChildren();
+  change({});
+  return {
+    retell,
+    busy,
+    /** Facts that belong to the answer shown; they come later. @param {(string | null)[]} facts */
+    tell: (facts) => change({ facts }),
+    /** The end of the run on the screen; null while it goes on. @param {'fell' | 'kept' | 'over' | null} fate @param {string} words */
+    ended: (fate, words) => {
+      const ended = fate === 'fell' || fate === 'kept' ? { tone: fate, words } : null;
+      // It is called at each bounce.
+      if (ended || state.ended) change({ ended });
+    },
+    /** Words on a play with the run, in place of the verdict; null ends it. @param {string | null} words */
+    plays: (words) => change({ played: words === null ? null : { tone: 'played', words } }),
+    /** Tells why there is no verdict. The evidence of the last one is out of sight until there is another. @param {string} words @param {string} label of the way to mend it @param {() => void} act */
+    hold: (words, label, act) => {
+      busy(false);
+      change({ held: { words, label, act } });
+    },
+    /** @param {Judged} judged @param {Measure} measure @param {boolean} newest false while the answer to a newer question is awaited */
+    show: (judged, measure, newest) => {
+      // Facts of another answer are void.
+      change({ facts: [], held: null, shown: { ...judged, measure } });
+      retell();
+      if (newest) busy(false);
+    },
+  };
 }
 
 /** @typedef {(query: string) => Promise<Stability>} Measure asks for the verdict with more, which is dearer */
