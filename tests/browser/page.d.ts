@@ -213,6 +213,23 @@ interface Watcher {
   problem?(refusal: Refusal): void;
 }
 
+/** A run beside the live one; where it is staged, its rod is drawn too. */
+type Other = Reference & { staged: boolean };
+
+/** The time line, for those who step through it and show runs beside this one. */
+interface Timeline {
+  /** The place of the shown impact; null before the first. */
+  place(): number | null;
+  /** Shows where another run parts from this one, and the time up to which it is known; null for nowhere. */
+  parts(t: number | null, known?: number): void;
+  /** Goes on or back by strikes; false where only the run itself can go on. */
+  step(by: number): boolean;
+  /** Plays or holds the past; false in the present, which the run itself plays. */
+  toggle(): boolean;
+  toNow(): void;
+  replayFall(): void;
+}
+
 /** The page at a moment. */
 interface PageState {
   scene: Scene;

@@ -31,8 +31,10 @@ export class Page extends TypedScene {
   panelLink = new URLSearchParams();
   /** The panels below the fold; they come after the first plot. @type {Panels | null} */
   panels = null;
-  /** The time line over the run; it comes late as well. @type {{toggle: () => boolean, step: (by: number) => boolean, toNow: () => void, replayFall: () => void} | null} */
+  /** The time line over the run; it comes late as well. @type {Timeline | null} */
   timeline = null;
+  /** Shows another run beside this one, or none, under a name. @type {(id: string, other: Other | null) => void} */
+  others = () => {};
   /** Runs that stay as references. @type {{pin: () => void, query: () => URLSearchParams, restore: (link: URLSearchParams) => string[]} | null} */
   pins = null;
   /** Undo and redo; it comes after the first plot. @type {{record: (words: string) => void, edit: (path: string, final: boolean) => void} | null} */

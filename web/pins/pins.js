@@ -67,8 +67,8 @@ const part = (place, query) => new URLSearchParams([...query].map(([key, value])
 /** @param {string} key */
 const isIntervention = (key) => key.startsWith('interventions.');
 
-/** @param {Page} page @param {import('../timeline/others.js').Others} others */
-export function bringPins(page, others) {
+/** @param {Page} page */
+export function bringPins(page) {
   const parting = new Parting(page.run);
   /** @type {(Pin | null)[]} */
   const pins = SLOTS.map(() => null);
@@ -132,7 +132,7 @@ export function bringPins(page, others) {
     for (const [place, pin] of pins.entries()) {
       const { name: label, symbol, colour } = SLOTS[place];
       const { run, staged = false } = pin ?? {};
-      others(`pin-${place}`, run ? { run, symbol, colour, label, staged } : null);
+      page.others(`pin-${place}`, run ? { run, symbol, colour, label, staged } : null);
     }
     const staged = pins.findIndex((pin) => pin?.staged && pin.run);
     parting.show(pins[staged]?.run ?? null, SLOTS[staged]?.name);

@@ -24,13 +24,11 @@ const LATEST = 20_000;
 
 const stillness = matchMedia('(prefers-reduced-motion: reduce)');
 
-/**
- * @param {Page} page
- * @param {Field} field the tilt gain
- * @param {import('./timeline.js').Timeline} timeline
- * @param {import('./others.js').Others} others
- */
-export function bringFork(page, field, timeline, others) {
+/** @param {Page} page */
+export function bringFork(page) {
+  const field = page.fields.find((one) => one.field === GAIN);
+  const { timeline } = page;
+  if (!field || !timeline) return;
   const { run } = page;
   /** The impact after which the fork has its own gain. @type {{n: number, t: number} | null} */
   let at = null;
@@ -95,7 +93,7 @@ export function bringFork(page, field, timeline, others) {
     at = null;
     draw();
     timeline.parts(null);
-    others('fork', null);
+    page.others('fork', null);
   };
 
   const close = () => {
@@ -120,7 +118,7 @@ export function bringFork(page, field, timeline, others) {
       if (at !== from) return;
       const label = `what if κ ${number(wanted)}`;
       const forked = recordedRun(answer, interventions);
-      others('fork', { run: forked, from: from.n, symbol: '◆', colour: 'measured', label, staged: true });
+      page.others('fork', { run: forked, from: from.n, symbol: '◆', colour: 'measured', label, staged: true });
       timeline.parts(from.t, answer.outcome.t);
       const { kind, bounces } = answer.outcome;
       const later = `${number(bounces - from.n, 8)} bounces`;

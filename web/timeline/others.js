@@ -45,11 +45,7 @@ export function recordedRun(answer, interventions = []) {
   return run;
 }
 
-/** A run beside the live one; where it is staged, its rod is drawn too. @typedef {Reference & {staged: boolean}} Other */
-
-/** Shows another run, or none, under a name. @typedef {(id: string, other: Other | null) => void} Others */
-
-/** The dots of the other runs in the planes, and their rods on the stage of the live one. @param {Page} page @returns {Others} */
+/** The dots of the other runs in the planes, and their rods on the stage of the live one. @param {Page} page @returns {Page['others']} */
 export function bringOthers({ plots, view }) {
   /** @type {Map<string, Other>} */
   const others = new Map();

@@ -70,9 +70,7 @@ function marksOf({ impacts, interventions, outcome, fate }, fields) {
   return marks;
 }
 
-/** The time line, for those who step through it and show runs beside this one. @typedef {ReturnType<typeof bringTimeline>} Timeline */
-
-/** @param {Page} page */
+/** @param {Page} page @returns {Timeline} */
 export function bringTimeline(page) {
   const { run } = page;
   const { impacts } = run;

@@ -19,7 +19,6 @@ import { bringFork } from '../../timeline/fork.js';
 import { bringOthers } from '../../timeline/others.js';
 import { bringTimeline } from '../../timeline/timeline.js';
 import { bringHistory } from '../history.js';
-import { GAIN } from '../page.js';
 import { listenToKeys } from './keys.js';
 import { bringSettings } from './settings.js';
 import { bringShare, savesOf } from './share.js';
@@ -40,7 +39,10 @@ export async function bringLateParts(page) {
   await Promise.all(STYLES.map(styles)).catch(() => {});
   bringSettings(page);
   bringCharts(page);
-  const others = bringTime(page);
+  page.sliders = bringSliders(page);
+  page.timeline = bringTimeline(page);
+  page.others = bringOthers(page);
+  bringFork(page);
   bringShell(page);
   bringPresent(bringStories(page));
   bringEnding(page);
@@ -51,7 +53,7 @@ export async function bringLateParts(page) {
   bringGrab(page);
   bringSymbols(page.view);
   bringImpacts(page);
-  page.pins = bringPins(page, others);
+  page.pins = bringPins(page);
   panels.join('pin', page.pins);
   panels.join('you', bringHand(page));
   // Until they are restored, the address keeps their part of the link.
@@ -81,15 +83,4 @@ function bringCharts(page) {
     const view = one === page.circle ? undefined : /** @type {CanvasView} */ (one);
     figure.offer(enlarger(figure.element, figure.title, () => savesOf(page, figure.id, figure.title, view)));
   }
-}
-
-/** The time line, and what goes with it: the speed, deeds, another run from here on. @param {Page} page */
-function bringTime(page) {
-  page.sliders = bringSliders(page);
-  const timeline = bringTimeline(page);
-  page.timeline = timeline;
-  const others = bringOthers(page);
-  const field = page.fields.find((one) => one.field === GAIN);
-  if (field) bringFork(page, field, timeline, others);
-  return others;
 }
