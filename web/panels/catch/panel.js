@@ -2,7 +2,7 @@
 // run under way.
 
 import { catchIt, isHeld, juggle, lengthOf, throwIt } from '../../app/late/guide.js';
-import { FigureColumns } from '../../charts/readable/server-figure.js';
+import { readColumns } from '../../charts/readable/server-figure.js';
 import { fixedQuantity, number, quantity } from '../../dom/numbers.js';
 import { capitalized } from '../../dom/typeset.js';
 import { THROWN } from '../../physics/body.js';
@@ -243,7 +243,7 @@ const reader =
     const striking = [strikes.t, strikes.theta, strikes.x, strikes.alpha, strikes.table_velocity, strikes.clearance];
     const held = [hold.t, hold.theta, hold.x, hold.alpha, hold.table_y_dot, hold.table_y];
     const before = strikes.n.length;
-    return new FigureColumns(figure).reader([...strikes.t, ...hold.t], (item) => {
+    return readColumns(figure, [...strikes.t, ...hold.t], (item) => {
       const isStrike = item < before;
       const at = isStrike ? item : item - before;
       const [t, theta, x, alpha, speed, height] = (isStrike ? striking : held).map((column) => column[at]);

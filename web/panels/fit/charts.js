@@ -1,7 +1,7 @@
 // Charts of measured bounces as SVG, read by pointer and keys: their residuals, the bounces over those of a run, and the convergence of a fit.
 
 import { roundRange, ticks } from '../../charts/axes.js';
-import { FigureColumns } from '../../charts/readable/server-figure.js';
+import { readColumns } from '../../charts/readable/server-figure.js';
 import { svg } from '../../charts/svg.js';
 import { fixed, number, quantity as worded } from '../../dom/numbers.js';
 import { angles, shownUnit } from '../../dom/units.js';
@@ -84,7 +84,7 @@ function plot(box, { along, name, whole = false, strips, items, words }) {
   const size = { viewBox: `0 0 ${width} ${height}`, width, height };
   const figure = /** @type {SVGSVGElement} */ (svg('svg', { ...size, 'aria-hidden': 'true' }, ...parts));
   box.replaceChildren(figure);
-  return new FigureColumns(figure).reader(items, words);
+  return readColumns(figure, items, words);
 }
 
 /** A way through places, and nothing without any. @param {string[]} places as `x y` */

@@ -1,7 +1,7 @@
 // The panel of speed against accuracy: every method on the page's scene. It measures on request only, since that keeps a core busy.
 
 import { movedInRow } from '../../charts/readable/chart-reader.js';
-import { FigurePoints, figureOf } from '../../charts/readable/server-figure.js';
+import { figureOf, pointsOf, readPoints } from '../../charts/readable/server-figure.js';
 import { svg } from '../../charts/svg.js';
 import { number, quantity } from '../../dom/numbers.js';
 import { html, useEffect, useMemo, useState } from '../../vendor/preact/preact.js';
@@ -81,18 +81,18 @@ export function SpeedAgainstAccuracy({ page }) {
 function Sheet({ shown: { answer, pictures, request }, axis, stale }) {
   const { methods, points, notes, reference } = answer;
   const title = (/** @type {string} */ name) => methods.find((method) => method.name === name)?.title ?? name;
-  const { figure, plot, drawn } = useMemo(() => {
+  const { figure, places, drawn } = useMemo(() => {
     const picture = figureOf(pictures[axis]);
-    const own = new FigurePoints(picture, ['point']);
-    return { figure: picture, plot: own, drawn: own.points.map(({ values }) => points[Number(values.point)]) };
+    const own = pointsOf(picture, ['point']);
+    return { figure: picture, places: own, drawn: own.map(({ values }) => points[Number(values.point)]) };
   }, [pictures, axis]);
-  const readable = {
-    ...plot.reader((index) => pointWords(drawn[index], title(drawn[index].method))),
+  const read = () => ({
+    ...readPoints(figure, places, (index) => pointWords(drawn[index], title(drawn[index].method))),
     moved: (/** @type {string} */ key, /** @type {number | null} */ at) => moved(drawn, key, at),
-  };
+  });
   /** A method's symbol, as the chart has it; empty for one that is not drawn. @param {string} method */
   const symbol = (method) => {
-    const { x, y } = plot.points[drawn.findIndex((point) => point.method === method)] ?? { x: 0, y: 0 };
+    const { x, y } = places[drawn.findIndex((point) => point.method === method)] ?? { x: 0, y: 0 };
     const mark = figure.querySelector(`[data-mark="${method}"]`)?.cloneNode(true);
     const box = `${x - 8} ${y - 8} 16 16`;
     return svg('svg', { class: 'figure', viewBox: box, 'aria-hidden': 'true' }, ...(mark ? [mark] : []));
@@ -107,7 +107,7 @@ function Sheet({ shown: { answer, pictures, request }, axis, stale }) {
       ? 'Steps of different methods are different work, so there is no front.'
       : 'Nothing lies below and left of the front.';
   return html`<div class=${`precision-sheet ${stale ? 'stale' : ''}`}>
-    <${Picture} name="precision" figure=${figure} read=${() => readable}
+    <${Picture} name="precision" figure=${figure} read=${read}
       label=${`Speed against accuracy: error over ${AXES[axis].toLowerCase()}, ${drawn.length} points`}
       hint=${`${front} The dotted line is the rounding of one number. With keys: left and right go from point to point, up and down from method to method.`} />
     <${Folded} title="Methods">

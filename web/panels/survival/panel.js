@@ -1,7 +1,7 @@
 // The panel of survival under noise: how long many runs of the page's scene last.
 
 import { valueAt } from '../../api/scene-fields.js';
-import { FigureColumns, figureOf } from '../../charts/readable/server-figure.js';
+import { readColumns, figureOf } from '../../charts/readable/server-figure.js';
 import { fixed, number, quantity } from '../../dom/numbers.js';
 import { angles, shownValue } from '../../dom/units.js';
 import { html, useEffect, useMemo, useRef, useState } from '../../vendor/preact/preact.js';
@@ -113,7 +113,8 @@ function Sheet({ shown: { answer, figure, path }, take }) {
     ...QUANTILES.map((name) => `|θ| ${Number(name.slice(1))} % / rad`),
   ];
   const read = (/** @type {SVGSVGElement} */ picture) =>
-    new FigureColumns(picture).reader(
+    readColumns(
+      picture,
       survival.survival.map((_, at) => at + 1),
       (at) => wordsAt(answer, at + 1),
     );
