@@ -16,95 +16,95 @@ const BUDGETED = 500;
 /** Impacts of a preview. */
 const AHEAD = 200;
 
-const verdicts = new Follower(async (/** @type {Page} */ page, signal, newest) => {
-  const scene = page.typedQuery;
-  if (page.unknown !== null)
-    return hold(page, `There is no case “${page.unknown}”; the page shows another one.`, 'Go on with this one', () => {
-      page.unknown = null;
-      page.follow(true);
-    });
-  if (page.away) return hold(page, 'The connection to the server is lost.', 'Connect now', () => page.run.retry());
-  if (!scene) return hold(page, missing(page.missing[0]), 'Show it', () => page.showFault());
-  try {
-    const answer = await get(`v1/stability?${scene}`, signal);
-    if (signal.aborted) return;
-    page.form?.blame([]);
-    page.view.learn(answer.derived);
-    for (const plot of page.plots) plot.redraw();
-    page.circle?.figure.element.classList.remove('stale');
-    const judged = { answer, scene };
-    page.judged = judged;
-    page.circle?.show(judged);
-    await page.verdict?.show(judged, (more) => get(`v1/stability?${scene}&${more}`), newest());
-    if (newest()) tellMore(page);
-    byId('build').textContent = server.build;
-  } catch (error) {
-    if (signal.aborted) return;
-    const errors = error instanceof Problem ? error.errors : [];
-    if (errors.length === 0) return hold(page, wordsOf(error), 'Try again', () => page.follow(true));
-    const elsewhere = page.form?.blame(errors) ?? [];
-    const blamed = page.fields.find(({ field }) => errors.some(({ pointer }) => pathOf(pointer) === field));
-    const words = elsewhere.join(' ') || 'There is no such scene.';
-    hold(page, words, blamed?.title ?? 'Show it', () => page.showFault());
-  }
-});
-
-const previews = new Follower(async (/** @type {Page} */ page, signal) => {
-  const scene = page.typedQuery;
-  if (!scene) return;
-  const answer = await get(`v1/trajectories?${scene}&bounces=${AHEAD}`, signal).catch(() => null);
-  // One of a scene that is wrong or out of date stays until there is another.
-  if (!answer) return;
-  page.ahead = recordedRun(answer);
-  for (const one of [...page.plots, page.view]) one.preview(page.ahead);
-});
-
-/** Tells why there is no verdict on what is on the screen. @param {Page} page @param {string} words @param {string} label @param {() => void} act */
-function hold(page, words, label, act) {
-  page.verdict?.hold(words, label, act);
-  page.circle?.figure.element.classList.add('stale');
-}
-
-const facts = new LatestRequest();
-
-/** The facts beside the verdict are dearer than it, so they wait for the scene to settle. */
-const tellMore = debounce(QUIET_MS, (/** @type {Page} */ page) => {
-  page.markGain();
-  // Without them the verdict stands alone.
-  factsOf(page, facts.next()).catch(() => {});
-});
-
-/** The budget is the dearest. @param {Page} page @param {AbortSignal} signal */
-async function factsOf(page, signal) {
-  const { judged, verdict } = page;
-  if (!judged || !verdict) return;
-  const [{ gainFact, firstLoss }, answer] = await Promise.all([
-    import('../panels/verdict/facts.js'),
-    get(`v1/stability?${judged.scene}&release_margins=true&bounces=${BUDGETED}`, signal),
-  ]);
-  if (page.judged !== judged) return;
-  const gains = gainFact({ ...answer, verdict: judged.answer.verdict });
-  verdict.tell([gains]);
-  if (judged.answer.verdict.code === 'unstable') return;
-  const { budget } = await get(`v1/stability?${judged.scene}&budget=true&bounces=${BUDGETED}`, signal);
-  if (page.judged === judged && budget) verdict.tell([gains, firstLoss(budget)]);
-}
-
-function hurry() {
-  verdicts.hurry();
-  previews.hurry();
-}
-
-const settle = debounce(QUIET_MS, hurry);
-
 /** Begins to ask for what belongs to the typed scene. @param {Page} page */
 export function beginToFollow(page) {
-  page.verdict = bringVerdict(byId('verdict'), byId('verdict-more'));
+  const verdict = bringVerdict(byId('verdict'), byId('verdict-more'));
+  page.verdict = verdict;
+
+  /** Tells why there is no verdict on what is on the screen. @param {string} words @param {string} label @param {() => void} act */
+  const hold = (words, label, act) => {
+    verdict.hold(words, label, act);
+    page.circle?.figure.element.classList.add('stale');
+  };
+
+  /** The facts beside the verdict, of which the budget is the dearest. @param {AbortSignal} signal */
+  const tellFacts = async (signal) => {
+    const { judged } = page;
+    if (!judged) return;
+    const [{ gainFact, firstLoss }, answer] = await Promise.all([
+      import('../panels/verdict/facts.js'),
+      get(`v1/stability?${judged.scene}&release_margins=true&bounces=${BUDGETED}`, signal),
+    ]);
+    if (page.judged !== judged) return;
+    const gains = gainFact({ ...answer, verdict: judged.answer.verdict });
+    verdict.tell([gains]);
+    if (judged.answer.verdict.code === 'unstable') return;
+    const { budget } = await get(`v1/stability?${judged.scene}&budget=true&bounces=${BUDGETED}`, signal);
+    if (page.judged === judged && budget) verdict.tell([gains, firstLoss(budget)]);
+  };
+
+  const facts = new LatestRequest();
+  /** The facts beside the verdict are dearer than it, so they wait for the scene to settle. */
+  const tellMore = debounce(QUIET_MS, () => {
+    page.markGain();
+    // Without them the verdict stands alone.
+    tellFacts(facts.next()).catch(() => {});
+  });
+
+  const verdicts = new Follower(async (_, signal, newest) => {
+    const scene = page.typedQuery;
+    if (page.unknown !== null)
+      return hold(`There is no case “${page.unknown}”; the page shows another one.`, 'Go on with this one', () => {
+        page.unknown = null;
+        page.follow(true);
+      });
+    if (page.away) return hold('The connection to the server is lost.', 'Connect now', () => page.run.retry());
+    if (!scene) return hold(missing(page.missing[0]), 'Show it', () => page.showFault());
+    try {
+      const answer = await get(`v1/stability?${scene}`, signal);
+      if (signal.aborted) return;
+      page.form?.blame([]);
+      page.view.learn(answer.derived);
+      for (const plot of page.plots) plot.redraw();
+      page.circle?.figure.element.classList.remove('stale');
+      const judged = { answer, scene };
+      page.judged = judged;
+      page.circle?.show(judged);
+      verdict.show(judged, (more) => get(`v1/stability?${scene}&${more}`), newest());
+      if (newest()) tellMore();
+      byId('build').textContent = server.build;
+    } catch (error) {
+      if (signal.aborted) return;
+      const errors = error instanceof Problem ? error.errors : [];
+      if (errors.length === 0) return hold(wordsOf(error), 'Try again', () => page.follow(true));
+      const elsewhere = page.form?.blame(errors) ?? [];
+      const blamed = page.fields.find(({ field }) => errors.some(({ pointer }) => pathOf(pointer) === field));
+      const words = elsewhere.join(' ') || 'There is no such scene.';
+      hold(words, blamed?.title ?? 'Show it', () => page.showFault());
+    }
+  });
+
+  const previews = new Follower(async (_, signal) => {
+    const scene = page.typedQuery;
+    if (!scene) return;
+    const answer = await get(`v1/trajectories?${scene}&bounces=${AHEAD}`, signal).catch(() => null);
+    // One of a scene that is wrong or out of date stays until there is another.
+    if (!answer) return;
+    page.ahead = recordedRun(answer);
+    for (const one of [...page.plots, page.view]) one.preview(page.ahead);
+  });
+
+  const hurry = () => {
+    verdicts.hurry();
+    previews.hurry();
+  };
+  const settle = debounce(QUIET_MS, hurry);
+
   page.follow = (another) => {
-    page.verdict?.busy(true);
+    verdict.busy(true);
     facts.cancel();
-    verdicts.want(page);
-    previews.want(page);
+    verdicts.want(null);
+    previews.want(null);
     if (another) hurry();
     else settle();
   };

@@ -65,7 +65,7 @@ export class Page extends TypedScene {
   plots = [];
   /** The bounces to come, which may be there before the charts. @type {RunState | null} */
   ahead = null;
-  /** Comes with them. @type {import('../charts/eigenvalue-circle.js').EigenvalueCircle | null} */
+  /** Comes with them. @type {import('../charts/eigenvalue-circle.js').Circle | null} */
   circle = null;
   /** True while a change of a value drops the body anew; else the run under way takes it, where it can. */
   anew = true;

@@ -5,7 +5,7 @@ import { Follower } from '../api/latest-request.js';
 import { fixed, number } from '../dom/numbers.js';
 import { STUDY_SHEETS, styles } from '../dom/styles.js';
 import { inWords } from '../dom/typeset.js';
-import { Figure } from './figure.js';
+import { makeFigure } from './figure.js';
 import { serverFigure } from './readable/server-figure.js';
 
 /** Height of the part that is shown, as a share of that of the plot. */
@@ -30,54 +30,52 @@ function wordsOf(answer) {
   return `κ ${fixed(gain.value, 3)}   R ${fixed(residue, 3)}   ${turn}`;
 }
 
-export class EigenvalueCircle {
-  figure;
+/** @typedef {ReturnType<typeof bringCircle>} Circle */
+
+export function bringCircle() {
   /** @type {Judged | null} */
-  #judged = null;
-  #seen = false;
+  let judged = null;
+  let seen = false;
   /** The scene whose picture is there. */
-  #drawn = '';
-  #pictures = new Follower(async (/** @type {string} */ scene, signal) => {
-    if (scene === this.#drawn) return;
-    const picture = serverFigure(`v1/stability?${scene}&format=svg`, signal);
-    const [figure] = await Promise.all([picture, styles(STUDY_SHEETS[0])]).catch(() => []);
+  let drawn = '';
+  const rows = () => judged?.answer.linear?.eigenvalues ?? [];
+  const figure = makeFigure(
+    'circle',
+    'Eigenvalues',
+    'Of one bounce: on the circle a dial of the tilt gain, off it balance is lost.',
+    ['eigenvalue', 'real', 'imaginary', 'modulus'],
+    () => rows().map(({ re, im, modulus }, index) => [index + 1, ...[re, im, modulus].map((one) => fixed(one, 6))]),
+  );
+  const pictures = new Follower(async (/** @type {string} */ scene, signal) => {
+    if (scene === drawn) return;
+    const asked = serverFigure(`v1/stability?${scene}&format=svg`, signal);
+    const [picture] = await Promise.all([asked, styles(STUDY_SHEETS[0])]).catch(() => []);
     // The one before stays while the server does not answer.
-    if (!figure) return;
-    middleOf(figure);
-    this.figure.box.replaceChildren(figure);
-    this.#drawn = scene;
+    if (!picture) return;
+    middleOf(picture);
+    figure.box.replaceChildren(picture);
+    drawn = scene;
   });
-
-  constructor() {
-    const rows = () => this.#judged?.answer.linear?.eigenvalues ?? [];
-    this.figure = new Figure(
-      'circle',
-      'Eigenvalues',
-      'Of one bounce: on the circle a dial of the tilt gain, off it balance is lost.',
-      ['eigenvalue', 'real', 'imaginary', 'modulus'],
-      () => rows().map(({ re, im, modulus }, index) => [index + 1, ...[re, im, modulus].map((one) => fixed(one, 6))]),
-    );
-    new IntersectionObserver(([entry]) => {
-      this.#seen = entry.isIntersecting;
-      this.#draw();
-    }).observe(this.figure.box);
-  }
-
-  /** @param {Judged} judged */
-  show(judged) {
-    this.#judged = judged;
-    const words = wordsOf(judged.answer);
-    this.figure.read(words);
-    this.figure.name(() => `Eigenvalues of one bounce on the unit circle. ${words}`);
-    this.figure.list();
-    this.#draw();
-  }
-
-  #draw() {
-    if (!this.#seen || !this.#judged) return;
-    const { answer, scene } = this.#judged;
-    if (answer.linear) return this.#pictures.want(String(scene));
-    this.#drawn = '';
-    this.figure.box.replaceChildren('No linear map here');
-  }
+  const draw = () => {
+    if (!seen || !judged) return;
+    if (judged.answer.linear) return pictures.want(String(judged.scene));
+    drawn = '';
+    figure.box.replaceChildren('No linear map here');
+  };
+  new IntersectionObserver(([entry]) => {
+    seen = entry.isIntersecting;
+    draw();
+  }).observe(figure.box);
+  return {
+    figure,
+    /** @param {Judged} newest */
+    show: (newest) => {
+      judged = newest;
+      const words = wordsOf(newest.answer);
+      figure.read(words);
+      figure.name(() => `Eigenvalues of one bounce on the unit circle. ${words}`);
+      figure.list();
+      draw();
+    },
+  };
 }

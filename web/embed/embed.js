@@ -1,7 +1,7 @@
 // One panel of the page alone, for a frame in somebody's dashboard: the scene, and the run if there is one, are in the address.
 // Not for changing either: that is for the whole page, one click away.
 
-import { EigenvalueCircle } from '../charts/eigenvalue-circle.js';
+import { bringCircle } from '../charts/eigenvalue-circle.js';
 import { get } from '../api/client.js';
 import { sceneQuery } from '../api/scene-query.js';
 import { Run } from '../run/run.js';
@@ -82,7 +82,7 @@ function watch(viewOf, { link, query }) {
 
 /** @param {Place} place */
 async function eigenvalues({ query }) {
-  const circle = new EigenvalueCircle();
+  const circle = bringCircle();
   main.append(circle.figure.element);
   circle.show({ answer: await get(`v1/stability?${query}`), scene: query });
 }

@@ -1,6 +1,6 @@
 // The parts that load after the first picture: map, reasons, values, time line, keys, saving.
 
-import { EigenvalueCircle } from '../../charts/eigenvalue-circle.js';
+import { bringCircle } from '../../charts/eigenvalue-circle.js';
 import { bringInteraction } from '../../charts/impacts/plot-interaction.js';
 import { anglePlane, energyPlot, velocityPlane } from '../../charts/impacts/plots.js';
 import { byId } from '../../dom/elements.js';
@@ -74,7 +74,7 @@ function bringCharts(page) {
     plot.preview(page.ahead);
     run.watch({ struck: plot.struck, cleared: () => plot.clear() });
   }
-  page.circle = new EigenvalueCircle();
+  page.circle = bringCircle();
   if (page.judged) page.circle.show(page.judged);
   for (const one of [...page.plots, page.circle]) {
     const { figure } = one;

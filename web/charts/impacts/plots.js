@@ -1,6 +1,6 @@
 // The plots of a run's impacts: two phase planes and the energy, with one mark per impact, drawn on without starting over.
 
-import { Figure } from '../figure.js';
+import { makeFigure } from '../figure.js';
 import { MARGIN, drawAxes, include, roundRange, toX, toY } from '../axes.js';
 import { drawDot, drawPixels } from '../marks.js';
 import { invalidate } from '../surface.js';
@@ -44,7 +44,7 @@ export class ImpactPlot extends ComparingPlot {
     /** @type {Column[]} */
     const listed = ['n', 't', ...meaning.listed];
     const columns = listed.map((column) => quantityOf(column).name);
-    const figure = new Figure(meaning.id, meaning.title, meaning.about, columns, (most) => {
+    const figure = makeFigure(meaning.id, meaning.title, meaning.about, columns, (most) => {
       const { begin, end } = impacts;
       return Array.from({ length: Math.min(most, end - begin) }, (_, row) =>
         listed.map((column) => {
