@@ -17,14 +17,17 @@ type Outcome = import('contract').Outcome & { contact?: import('contract').HoldE
 type CanvasView = import('../../web/charts/surface.js').CanvasView;
 type Column = import('../../web/run/impacts.js').Column;
 type Form = import('../../web/form/form.js').Form;
+type Grid = import('../../web/panels/map/grid.js').Grid;
 type Impact = import('../../web/run/impacts.js').Impact;
 type ImpactPlot = import('../../web/charts/impacts/plots.js').ImpactPlot;
 type Impacts = import('../../web/run/impacts.js').Impacts;
 type Lasting = import('../../web/run/impacts.js').Lasting;
 type Page = import('../../web/app/page.js').Page;
 type Problem = import('../../web/api/client.js').Problem;
+type Rig = import('../../web/rig/rig.js').Rig;
 type Run = import('../../web/run/run.js').Run;
 type RunState = import('../../web/run/run-state.js').RunState;
+type ScenePage = import('../../web/panels/scene-page.js').ScenePage;
 type Surface = import('../../web/charts/surface.js').Surface;
 type Tone = import('../../web/panels/parts.js').Tone;
 
@@ -367,3 +370,10 @@ interface PanelPage {
   /** The page of Play with its run, which the panel may act on. */
   play?: Page;
 }
+
+/** A field of a map with its ends. */
+type Side = { field: Field; from: number; to: number };
+type Sides = { x: Side; y: Side };
+
+/** The sides of a map, and values by their names in the request. */
+type MapSettings = Sides & { quantity: string; bounces: number; columns: number } & Record<string, any>;

@@ -9,7 +9,6 @@ import { Row, Table, sentence, sign, words } from '../panels/parts.js';
 import { html, useEffect, useLayoutEffect, useRef, useState } from '../vendor/preact/preact.js';
 
 /** @import { PaperItem, Quantity, Failure } from 'contract' */
-/** @import { ScenePage } from '../panels/scene-page.js' */
 
 /** Time that a figure may take, ms. */
 const PATIENCE_MS = 60_000;

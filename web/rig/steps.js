@@ -19,7 +19,6 @@ import { drawSymbols } from '../scene/symbols.js';
 import { World } from '../scene/world.js';
 import { html, useEffect, useLayoutEffect, useRef, useState } from '../vendor/preact/preact.js';
 
-/** @import { Rig } from './rig.js' */
 /** @import { Controller as Law } from 'contract' */
 /** @import { Ends } from '../panels/verdict/words.js' */
 /** @import { Line } from '../panels/verdict/facts.js' */

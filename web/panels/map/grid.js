@@ -7,7 +7,6 @@ import { bouncesOf, outlineQuery, passesOf, requestQuery, rowsOf } from './setti
 
 /** @typedef {import('contract').Region['limit_curves']} LimitCurves */
 /** @import { Class } from './classes.js' */
-/** @import { Side, Settings } from './settings.js' */
 
 /** A run that ends within this share of its bounces falls early. */
 const EARLY = 0.25;
@@ -40,7 +39,7 @@ export class Grid {
   /** The number of cells of each outcome; null until the answer is whole. @type {Record<string, number> | null} */
   counts = null;
 
-  /** @param {Settings} settings @param {{outcome_names: string[], limit_curves: LimitCurves}} outline @param {Grid | null} coarser */
+  /** @param {MapSettings} settings @param {{outcome_names: string[], limit_curves: LimitCurves}} outline @param {Grid | null} coarser */
   constructor(settings, { outcome_names: names, limit_curves: limitCurves }, coarser) {
     this.settings = settings;
     this.columns = settings.columns;
@@ -162,14 +161,14 @@ const known = new Map();
 
 /**
  * Asks for a map, finer and finer.
- * @param {Settings} settings
+ * @param {MapSettings} settings
  * @param {URLSearchParams} scene
  * @param {object} how
  * @param {AbortSignal} how.signal
  * @param {boolean} how.unasked true when nobody has pressed a button for it
  * @param {(progress: {done: number, of: number, columns: number}) => void} how.heard rows of a pass
  * @param {(grid: Grid, request: URLSearchParams) => void} how.show a pass has its first rows, or all
- * @returns {Promise<{grid: Grid | null, refused: Problem | null, waits: Settings | null}>} as fine as wanted, or as the server allows; or up to a pass that waits for somebody to ask for it
+ * @returns {Promise<{grid: Grid | null, refused: Problem | null, waits: MapSettings | null}>} as fine as wanted, or as the server allows; or up to a pass that waits for somebody to ask for it
  */
 export async function refine(settings, scene, { signal, unasked, heard, show }) {
   const passes = passesOf(settings.columns).map((columns) => ({ ...settings, columns }));

@@ -25,10 +25,8 @@ import {
 } from './settings.js';
 import { Legend, Sample, cellWords, decimalsOf, labelOf, mapWords } from './words.js';
 
-/** @import { Grid } from './grid.js' */
-/** @import { Settings, Side, Sides } from './settings.js' */
 /** @typedef {{x: number, y: number}} Values of the two fields */
-/** The drawn cells, the request for them, and the settings with the finest columns wanted. @typedef {{grid: Grid, request: URLSearchParams, settings: Settings}} Shown */
+/** The drawn cells, the request for them, and the settings with the finest columns wanted. @typedef {{grid: Grid, request: URLSearchParams, settings: MapSettings}} Shown */
 
 const HINT =
   'Drag the point: the body drops from there. With Shift, drag a rectangle to look closer; Escape goes back. With keys: arrows move the point, with Shift ten cells, + looks closer.';
@@ -66,7 +64,7 @@ const styleOf = ({ low, high }) => ({
 /**
  * Asks for a map when its settings or the scene have changed, as long as it is in sight.
  * @param {PanelPage} page
- * @param {Settings} settings
+ * @param {MapSettings} settings
  * @param {boolean} near
  */
 function useMap({ query, link }, settings, near) {

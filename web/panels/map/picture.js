@@ -8,9 +8,6 @@ import { CLASSES, fallTints, hatching, pixelOf } from './classes.js';
 import { halfCell, rangesOf } from './settings.js';
 import { axisOf } from './words.js';
 
-/** @import { Grid } from './grid.js' */
-/** @import { Settings } from './settings.js' */
-
 /** Room around the cells for the axes, px; the style sheet has it too, for `.map-frame`. */
 const ROOM = { left: 52, right: 14, top: 26, bottom: 40 };
 /** Lines of a hatching. */
@@ -26,13 +23,13 @@ export class MapPicture extends CanvasView {
   #cells = document.createElement('canvas');
   #sheet = document.createElement('canvas');
 
-  /** @param {HTMLElement} box @param {Settings} settings */
+  /** @param {HTMLElement} box @param {MapSettings} settings */
   constructor(box, settings) {
     super(box, 1);
     this.#settings = settings;
   }
 
-  /** @param {Settings} settings whose columns are the finest wanted @param {Grid} grid */
+  /** @param {MapSettings} settings whose columns are the finest wanted @param {Grid} grid */
   show(settings, grid) {
     this.#settings = settings;
     this.#grid = grid;

@@ -10,10 +10,6 @@ import { CATCHES, CatchFields, inUse } from '../catch/settings.js';
 import { NumberField } from '../parts.js';
 import { controlsOf, faultOf, numberOf, otherFaults, readSettings, whole, within } from '../settings.js';
 
-/** A field with its ends. @typedef {{field: Field, from: number, to: number}} Side */
-/** @typedef {{x: Side, y: Side}} Sides */
-/** The sides, and values by their names in the request. @typedef {Sides & {quantity: string, bounces: number, columns: number} & Record<string, any>} Settings */
-
 const NAMES = /** @type {const} */ (['x', 'y']);
 
 /** The usual sides of a map, and those of a scene whose usual fields mean nothing: feedback has no tilt gain, a point no angle. */
@@ -72,7 +68,7 @@ const PASSES = [24, 96, 384];
 /** The columns of its passes, from coarse to fine. @param {number} finest */
 export const passesOf = (finest) => [...PASSES.filter((columns) => columns < finest), finest];
 
-/** Bounces of its runs, or as many as take the time of its catches. @param {Settings} settings */
+/** Bounces of its runs, or as many as take the time of its catches. @param {MapSettings} settings */
 export function bouncesOf({ columns, bounces, quantity }) {
   const { runs, catches } = QUANTITIES[quantity];
   return columns * rowsOf(columns) * (runs ? bounces : catches ? CATCH_BOUNCES : 0);
@@ -81,7 +77,7 @@ export function bouncesOf({ columns, bounces, quantity }) {
 /** Half of the width of a cell. @param {Side} side @param {number} count of cells */
 export const halfCell = ({ from, to }, count) => (to - from) / (count - 1) / 2;
 
-/** The values along both axes. Half of a finest cell lies beyond the ends, so that they are the same for all passes. @param {Settings} settings */
+/** The values along both axes. Half of a finest cell lies beyond the ends, so that they are the same for all passes. @param {MapSettings} settings */
 export function rangesOf({ x, y, columns }) {
   const around = (/** @type {Side} */ side, /** @type {number} */ count) => {
     const half = halfCell(side, count);
@@ -145,7 +141,7 @@ export function readMap(page) {
     for (const part of NAMES.flatMap(partsOf)) broken.push([part, '']);
     ({ x, y } = usual);
   }
-  const settings = /** @type {Settings} */ ({ ...values, x, y });
+  const settings = /** @type {MapSettings} */ ({ ...values, x, y });
   return { settings, table, usual, broken };
 }
 
@@ -162,7 +158,7 @@ export const sideParts = (sides, usual) =>
 
 /**
  * A request for `/v1/regions`. The scene's own values of the two fields do not matter and are left out.
- * @param {Settings} settings
+ * @param {MapSettings} settings
  * @param {URLSearchParams} scene
  */
 export function requestQuery(settings, scene) {

@@ -9,8 +9,6 @@ import { endedAs, reasonOf } from '../verdict/words.js';
 import { CLASSES, expected } from './classes.js';
 import { QUANTITIES, isOfCatches } from './settings.js';
 
-/** @import { Grid } from './grid.js' */
-/** @import { Side } from './settings.js' */
 /** @typedef {{column: number, row: number}} Cell */
 
 /** Rows of the table, and its columns. */
