@@ -1,13 +1,8 @@
 // Text fields for numbers. Typing changes nothing: Enter or leaving the field commits, Escape and a refused entry put back what was there.
 
-import { read } from './typed-number.js';
-import { shownValue } from './units.js';
-
-/** @typedef {import('./typed-number.js').Reading} Reading */
-
 /**
  * @param {HTMLInputElement | HTMLTextAreaElement} input whose listeners of `change` then hear of accepted entries only
- * @param {(text: string) => Reading & {text?: string}} judge may give the text to show for an accepted entry
+ * @param {(text: string) => {problem?: string, text?: string}} judge may give the text to show for an accepted entry
  * @param {(problem: string | null, refused: string) => void} say tells why an entry was refused, once the text before it stands again; null for one that was not
  * @returns {() => void} commits what is being typed
  */
@@ -70,32 +65,6 @@ export function commits(input, judge, say) {
   return finish;
 }
 
-/**
- * Lets an input take numbers alone.
- * @param {HTMLInputElement} input
- * @param {() => HTMLElement} errorLine tells why an entry was refused
- * @param {{unit: () => string | null, open: () => boolean, fault: (value: number) => string | null}} entry the unit, null for a number without one; true where it may be left empty; the reason to refuse a value
- */
-export function takeNumbers(input, errorLine, { unit, open, fault }) {
-  const judge = (/** @type {string} */ text) => {
-    if (text.trim() === '' && open()) return {};
-    const { value, problem } = read(text, unit());
-    if (value === undefined) return { problem };
-    const wrong = fault(value);
-    return wrong ? { problem: wrong } : { text: String(Number(shownValue(value, unit()).toPrecision(12))) };
-  };
-  // The server's words on the value before are void; taken away later they would move a button while it is pressed.
-  input.addEventListener('beforeinput', () => {
-    errorLine().textContent = '';
-    input.removeAttribute('aria-invalid');
-  });
-  commits(input, judge, (problem) => {
-    errorLine().textContent =
-      problem === null ? '' : `${input.value.trim() || 'The empty field'} was put back: ${problem}`;
-    if (problem !== null && pressed?.closest('button')) withholdClick(input);
-  });
-}
-
 /** The element that a pointer is down on. @type {Element | null} */
 let pressed = null;
 /** @param {Event} event */
@@ -105,7 +74,8 @@ const follow = ({ type, target }) => {
 for (const type of ['pointerdown', 'pointerup', 'pointercancel']) addEventListener(type, follow, true);
 
 /** The press of a button by which a refused entry was left does nothing: it was meant for that entry, which has the focus again, also where the button has moved since. @param {HTMLElement} input */
-function withholdClick(input) {
+export function withholdPress(input) {
+  if (!pressed?.closest('button')) return;
   const withhold = (/** @type {Event} */ event) => {
     event.preventDefault();
     event.stopPropagation();

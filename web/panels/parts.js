@@ -1,8 +1,8 @@
 // Parts of panels and steps as components: words, tables, fields and charts.
 
 import { copy } from '../dom/clipboard.js';
-import { takeNumbers } from '../dom/number-input.js';
-import { parse } from '../dom/typed-number.js';
+import { commits, withholdPress } from '../dom/number-input.js';
+import { parse, read } from '../dom/typed-number.js';
 import { capitalized, marked, prose, symbol } from '../dom/typeset.js';
 import { angles, shownUnit, shownValue } from '../dom/units.js';
 import { html, useEffect, useLayoutEffect, useRef, useState } from '../vendor/preact/preact.js';
@@ -191,15 +191,26 @@ export function NumberField(props) {
   const own = () => now.current.unit || null;
   const input = useRef(/** @type {any} */ (null));
   const error = useRef(/** @type {any} */ (null));
-  useLayoutEffect(
-    () =>
-      takeNumbers(input.current, () => error.current, {
-        unit: own,
-        open: () => now.current.open === true,
-        fault: (typed) => now.current.fault?.(typed) ?? null,
-      }),
-    [],
-  );
+  useLayoutEffect(() => {
+    const element = input.current;
+    const judge = (/** @type {string} */ text) => {
+      if (text.trim() === '' && now.current.open) return {};
+      const { value: typed, problem } = read(text, own());
+      if (typed === undefined) return { problem };
+      const wrong = now.current.fault?.(typed);
+      return wrong ? { problem: wrong } : { text: String(Number(shownValue(typed, own()).toPrecision(12))) };
+    };
+    // The server's words on the value before are void; taken away later they would move a button while it is pressed.
+    element.addEventListener('beforeinput', () => {
+      error.current.textContent = '';
+      element.removeAttribute('aria-invalid');
+    });
+    commits(element, judge, (problem) => {
+      const put = `${element.value.trim() || 'The empty field'} was put back: ${problem}`;
+      error.current.textContent = problem === null ? '' : put;
+      if (problem !== null) withholdPress(element);
+    });
+  }, []);
   useLayoutEffect(() => {
     // An entry of more digits than are shown stays as it was typed.
     if (parse(input.current.value, own()) === (value ?? null)) return;
