@@ -13,7 +13,7 @@ import { endedAs } from '../panels/verdict/words.js';
 import { interventionQuery, interventionsOf } from '../run/interventions.js';
 import { recordedRun } from '../timeline/others.js';
 import { html, render } from '../vendor/preact/preact.js';
-import { Parting } from './parting.js';
+import { bringParting } from './parting.js';
 
 /** Names and marks. @type {(Pick<Reference, 'symbol' | 'colour'> & {name: string})[]} */
 const SLOTS = [
@@ -69,7 +69,7 @@ const isIntervention = (key) => key.startsWith('interventions.');
 
 /** @param {Page} page */
 export function bringPins(page) {
-  const parting = new Parting(page.run);
+  const parting = bringParting(page.run);
   /** @type {(Pin | null)[]} */
   const pins = SLOTS.map(() => null);
   let told = '';
