@@ -1,11 +1,9 @@
 //! `/v1/periodic-orbits`: orbits that repeat after some contacts, and branches of them.
 
-use equipoise_physics::analysis::boundary::period_two_angle;
+use equipoise_physics::analysis::boundary::{period_two_angle, symmetric_orbit};
 use equipoise_physics::analysis::periodic_orbits::branch::{Branch, BranchPoint, BranchStart, ParameterRange, follow};
 use equipoise_physics::analysis::periodic_orbits::multipliers::Bifurcation;
-use equipoise_physics::analysis::periodic_orbits::{
-    OrbitFailure, OrbitProblem, PeriodicOrbit, find, find_at_theta, symmetric,
-};
+use equipoise_physics::analysis::periodic_orbits::{OrbitFailure, OrbitProblem, PeriodicOrbit, find, find_at_theta};
 use equipoise_physics::analysis::repeating::of_scene;
 use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::map::strike::State;
@@ -443,7 +441,7 @@ fn one(
         }),
         BranchStart::Near(state) => find(setting, period, &state),
         BranchStart::Symmetric(theta) => {
-            let state = symmetric(&setting.body, theta).ok_or_else(|| {
+            let state = symmetric_orbit(&setting.body, theta).ok_or_else(|| {
                 let kappa = setting.body.rod.tilt_gain;
                 let where_it_sticks = if setting.body.friction.is_some() {
                     " where the contact sticks to a table that moves along with it"

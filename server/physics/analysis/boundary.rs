@@ -2,8 +2,9 @@
 
 use crate::analysis::contact_regime::{ContactRegime, contact_regime, turning_radius_squared};
 use crate::analysis::fixed_point::FixedPoint;
+use crate::analysis::root::root;
 use crate::map::body::Body;
-use crate::map::strike::{EnergyFeedback, Rod};
+use crate::map::strike::{EnergyFeedback, Rod, State};
 use crate::numbers::trig;
 
 /// Kind of a loss of stability by the sign of its coefficient: `soft` if positive (runs stay bounded at the end and a little beyond), `hard` if
@@ -61,22 +62,13 @@ pub fn boundary_coefficient(model: &Body, fixed_point: &FixedPoint) -> Option<f6
     })
 }
 
-/// The mirror-symmetric orbit of period 2 through an angle θ: (±θ, ±ẋ, −V, ±Gθ/V).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SymmetricOrbit {
-    /// V², m²/s².
-    pub speed_squared: f64,
-    /// ẋ/V.
-    pub slope: f64,
-}
-
-/// The symmetric orbit of a body through θ, rad, without friction or with a matched contact that sticks. `None` if there is none, or if the contact
-/// would slide.
+/// The state before one contact of the mirror-symmetric orbit of period 2 through an angle θ, rad, at the energy that it has: the other one has all
+/// signs but that of ẏ turned round. Without friction or with a matched contact that sticks; `None` if there is none, or if the contact would slide.
 ///
-/// A strike turns all velocities round, so it needs ρ²θ̇ = Gρ²θ/V of turn and V of rise on each side. Without friction
-/// V² = Gρ²θ cos κθ/(l sin((κ − 1)θ)) and ẋ = V tan κθ. With β = (1 − κ)θ and the impulse P_t = −(C/A)P_n of a contact that sticks,
-/// V² = Gθ(ρ² cos κθ + l² cos β cos θ)/(l sin((κ − 1)θ)) and ẋ = V tan(κθ + atan(C/A)), for |C/A| ≤ μ.
-pub fn symmetric_orbit(model: &Body, theta: f64) -> Option<SymmetricOrbit> {
+/// These orbits branch off the upright bounce at κ_c. A strike turns all velocities round, so with V = |ẏ| it needs ρ²θ̇ = Gρ²θ/V of turn and V of rise
+/// on each side. Without friction V² = Gρ²θ cos κθ/(l sin((κ − 1)θ)) and ẋ = V tan κθ. With β = (1 − κ)θ and the impulse P_t = −(C/A)P_n of a contact
+/// that sticks, V² = Gθ(ρ² cos κθ + l² cos β cos θ)/(l sin((κ − 1)θ)) and ẋ = V tan(κθ + atan(C/A)), for |C/A| ≤ μ.
+pub fn symmetric_orbit(model: &Body, theta: f64) -> Option<State> {
     let Rod { contact_distance, radius_of_gyration, gravity, tilt_gain: kappa, .. } = model.rod;
     let (sin_alpha, cos_alpha) = trig::sin_cos(kappa * theta);
     let (sin_beta, cos_beta) = trig::sin_cos((kappa - 1.0) * theta);
@@ -97,7 +89,10 @@ pub fn symmetric_orbit(model: &Body, theta: f64) -> Option<SymmetricOrbit> {
         ContactRegime::Sticking => return None,
     };
     let rises = cos_alpha > 0.0 && speed_squared > 0.0 && speed_squared.is_finite();
-    rises.then_some(SymmetricOrbit { speed_squared, slope })
+    rises.then(|| {
+        let speed = speed_squared.sqrt();
+        State { theta, x_dot: slope * speed, y_dot: -speed, theta_dot: gravity * theta / speed }
+    })
 }
 
 /// θ, rad, of the mirror-symmetric period-2 orbit at the energy of the fixed point, the one nearest to upright; `None` if there is
@@ -116,14 +111,13 @@ pub fn period_two_angle(model: &Body, topple_angle: f64, fixed_point: &FixedPoin
     let lent = if is_matched { kappa * turning_radius_squared(rod, regime) / (kappa - 1.0) } else { 0.0 };
     // The energy of the orbit with angle θ above that of the fixed point; NaN if there is no such orbit.
     let excess = |theta: f64| {
-        let Some(SymmetricOrbit { speed_squared, slope }) = symmetric_orbit(model, theta) else {
+        let Some(State { x_dot, y_dot, theta_dot, .. }) = symmetric_orbit(model, theta) else {
             return f64::NAN;
         };
         let (_, versine) = trig::sin_versine(theta);
-        let turning = (rho_squared + lent) * gravity * gravity * theta * theta / speed_squared;
-        let aside = slope * slope * speed_squared + turning;
+        let aside = x_dot * x_dot + (rho_squared + lent) * theta_dot * theta_dot;
         let held = if holds_height(rod) { 0.0 } else { 0.5 * aside };
-        0.5 * (speed_squared - fixed_point.speed * fixed_point.speed) + held - weight * versine
+        0.5 * (y_dot * y_dot - fixed_point.speed * fixed_point.speed) + held - weight * versine
     };
     let step = topple_angle / 1024.0;
     let (mut low, mut high) = (step * 1e-6, step);
@@ -134,9 +128,5 @@ pub fn period_two_angle(model: &Body, topple_angle: f64, fixed_point: &FixedPoin
     if below.is_nan() || above.is_nan() || below * above > 0.0 {
         return None;
     }
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if excess(middle) * below > 0.0 { low = middle } else { high = middle }
-    }
-    Some(0.5 * (low + high))
+    root([(low, below), (high, above)], 0.0, |theta| Ok::<_, ()>(Some(excess(theta)))).ok().map(|(theta, _)| theta)
 }

@@ -145,6 +145,8 @@ fn multiply(factors: &[OneSidedDerivative], sides: &[OneSidedDerivative]) -> Vec
 /// end, and in the same way from both sides.
 fn derivatives(body: &Body, lifted: &Body<Derived>, contact: &Contact, flight_time: f64) -> Vec<OneSidedDerivative> {
     let Contact { n, x, ref state, .. } = *contact;
+    let map = map_of(body);
+    // Not by way of ρθ, whose rounding may lead beyond a switch of friction.
     let values = parts(&PreImpact::at(n, x, *state));
     let per_length = 1.0 / body.rod.radius_of_gyration;
     let rate = |index: usize| if [ARC, SPIN].contains(&index) { per_length } else { 1.0 };
@@ -189,8 +191,13 @@ fn derivatives(body: &Body, lifted: &Body<Derived>, contact: &Contact, flight_ti
             ContactMode::SlideThrough => ContactMode::Slide,
             mode => mode,
         };
-        let matrix = after_flight(lifted, &coming, &strike, flight_time, &map_of(body).components());
-        let side = OneSidedDerivative { contact_mode, matrix };
+        let end = lifted.land(&coming, &strike, flight_time);
+        let mut end = end.map_or([Dual::from_f64(f64::NAN); COMPONENTS], |end| map.vector_of(&end));
+        // Without air a point mass comes down as fast as it rose.
+        if body.is_point && body.drag.is_none() {
+            end[Y_DOT] = -strike.after.y_dot;
+        }
+        let side = OneSidedDerivative { contact_mode, matrix: map.rates(&end) };
         if !sides.contains(&side) {
             sides.push(side);
         }
@@ -206,25 +213,4 @@ fn strike_deciding(
     decide: &mut dyn FnMut(Decision<Derived>) -> bool,
 ) -> Strike<Derived> {
     body.strike_deciding(coming, decide)
-}
-
-/// The derivative of the state at the end of a flight of duration `root`, s, after a strike.
-fn after_flight(
-    body: &Body<Derived>,
-    coming: &PreImpact<Derived>,
-    strike: &Strike<Derived>,
-    root: f64,
-    components: &[usize],
-) -> DMatrix<f64> {
-    let mut ends = body.land(coming, strike, root).map_or([Dual::from_f64(f64::NAN); COMPONENTS], |end| parts(&end));
-    for index in [ARC, SPIN] {
-        ends[index] = body.rod.radius_of_gyration * ends[index];
-    }
-    // Without air a point mass comes down as fast as it rose.
-    if body.is_point && body.drag.is_none() {
-        ends[Y_DOT] = -strike.after.y_dot;
-    }
-    DMatrix::from_fn(components.len(), components.len(), |row, column| {
-        ends[components[row]].partials[components[column]]
-    })
 }

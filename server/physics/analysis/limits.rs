@@ -9,6 +9,7 @@
 use crate::analysis::jacobian::modulus;
 use crate::analysis::repeating::{NoRepeatingBounce, ON_CIRCLE, RepeatingBounce, SceneMap, find_planned, upright};
 use crate::analysis::return_map::{COMPONENTS, Vector, X};
+use crate::analysis::root::{Bracket, root};
 use crate::analysis::small_deviations::settled_bounce;
 use crate::map::table::control_law::Steering;
 use crate::scene::{GAINS, Name, Scene};
@@ -26,9 +27,6 @@ const MOST_HALVINGS: usize = 60;
 
 /// The same where no bounce is found beyond, which takes Newton's iteration long: its bounce goes to rest there.
 const TO_REST: usize = 8;
-
-/// Most steps to the root of a test function.
-const MOST_STEPS: usize = 60;
 
 /// Distance from ±1 within which two eigenvalues count as one that is double, which rounding moves by its square root.
 const DOUBLE: f64 = 1e-6;
@@ -199,31 +197,6 @@ impl RepeatingBounce {
     }
 }
 
-/// A value of a number at which something is as at the start of a search, and one farther on at which it is not, each with what was found there.
-pub(super) struct Bracket<T> {
-    pub(super) kept: (f64, T),
-    pub(super) lost: (f64, T),
-}
-
-impl<T> Bracket<T> {
-    /// Narrows the bracket by halving it. `at` tells what is found at a value near one that is kept, and whether it is kept.
-    pub(super) fn halve<E>(
-        &mut self,
-        most: usize,
-        mut at: impl FnMut(f64, &T) -> Result<(T, bool), E>,
-    ) -> Result<(), E> {
-        for _ in 0..most {
-            let middle = 0.5 * (self.kept.0 + self.lost.0);
-            if middle == self.kept.0 || middle == self.lost.0 {
-                break;
-            }
-            let (found, is_kept) = at(middle, &self.kept.1)?;
-            *(if is_kept { &mut self.kept } else { &mut self.lost }) = (middle, found);
-        }
-        Ok(())
-    }
-}
-
 /// A bounce, or the kind of a limit beyond which there is none.
 type Found = Result<RepeatingBounce, LimitKind>;
 
@@ -357,7 +330,7 @@ impl<'a> Moving<'a> {
         Ok(Limit { value, accuracy: (beyond - value).abs(), kind })
     }
 
-    /// Root of a test function in a bracket with a bound on its error (T. R. Chandrupatla 1997); `None` without a root.
+    /// Root of a test function in a bracket with a bound on its error; `None` without a root.
     fn root(&mut self, bracket: &Bracket<Found>, leaving: Complex<f64>) -> Result<Option<(f64, f64)>, NoLimits> {
         let Bracket { kept: (one, Ok(first)), lost: (other, Ok(second)) } = bracket else { return Ok(None) };
         let (count, neutral) = (first.matrix.nrows(), first.neutral.len());
@@ -367,48 +340,15 @@ impl<'a> Moving<'a> {
             return Ok(None);
         }
         let slope = ((f_second - f_first) / (other - one)).abs();
-        let (mut a, mut fa, mut b, mut fb) = (*other, f_second, *one, f_first);
         let mut near = bracket.kept.1.clone();
-        let mut share = 0.5;
-        let (mut value, mut step) = (*other, f64::INFINITY);
-        for _ in 0..MOST_STEPS {
-            let at = a + share * (b - a);
+        let (value, step) = root([(*other, f_second), (*one, f_first)], rounding, |at| {
             let found = self.at(at, &near)?;
-            let f = match &found {
-                Ok(bounce) if bounce.matrix.nrows() == count => bounce.test(leaving, neutral).0,
-                // Close to the root the neutral directions may not be told from the one that joins them.
-                _ => {
-                    (value, step) = (at, (at - value).abs());
-                    break;
-                }
-            };
+            // Close to the root the neutral directions may not be told from the one that joins them.
+            let alike = found.as_ref().ok().filter(|bounce| bounce.matrix.nrows() == count);
+            let test = alike.map(|bounce| bounce.test(leaving, neutral).0);
             near = found;
-            let (c, fc) = if (f < 0.0) == (fa < 0.0) {
-                (a, fa)
-            } else {
-                let last = (b, fb);
-                (b, fb) = (a, fa);
-                last
-            };
-            (a, fa) = (at, f);
-            let secant = if fa == 0.0 { a } else { a - fa * (b - a) / (fb - fa) };
-            (value, step) = (secant, (secant - value).abs());
-            let least = f64::EPSILON * a.abs() / (b - a).abs();
-            if fa.abs() < rounding {
-                step = 0.0;
-                break;
-            }
-            if least > 0.25 {
-                break;
-            }
-            let (xi, phi) = ((a - b) / (c - b), (fa - fb) / (fc - fb));
-            share = if phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi {
-                fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
-            } else {
-                0.5
-            };
-            share = share.clamp(least, 1.0 - least);
-        }
+            Ok(test)
+        })?;
         let accuracy = step + rounding / slope + f64::EPSILON * value.abs();
         Ok(value.is_finite().then_some((value, accuracy)))
     }

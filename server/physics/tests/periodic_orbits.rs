@@ -1,11 +1,11 @@
 //! Periodic orbits against what is known of them exactly: the symmetric family, κ_c, the sign and size of C.
 
 use equipoise_physics::analysis::basin::find_basin;
-use equipoise_physics::analysis::boundary::boundary_coefficient;
+use equipoise_physics::analysis::boundary::{boundary_coefficient, symmetric_orbit};
 use equipoise_physics::analysis::jacobian::{eigenvalues, jacobian, jacobian_at};
 use equipoise_physics::analysis::periodic_orbits::branch::{Branch, BranchStart, ParameterRange, follow};
 use equipoise_physics::analysis::periodic_orbits::multipliers::{Bifurcation, Multipliers};
-use equipoise_physics::analysis::periodic_orbits::{OrbitFailure, OrbitProblem, PeriodicOrbit, find, symmetric};
+use equipoise_physics::analysis::periodic_orbits::{OrbitFailure, OrbitProblem, PeriodicOrbit, find};
 use equipoise_physics::analysis::repeating;
 use equipoise_physics::analysis::return_map::ReturnMap;
 use equipoise_physics::analysis::small_deviations::small_deviations;
@@ -49,7 +49,7 @@ fn the_symmetric_family_is_a_solution_as_it_stands() {
     for (kappa, theta) in [(1.55, 0.1), (1.55, 0.4), (1.3, 0.2), (1.7, -0.6), (1.52, 1e-3)] {
         let scene = scene(&[(Name::TiltGain, kappa)]);
         let setting = OrbitProblem::of(&scene).unwrap();
-        let state = symmetric(&setting.body, theta).unwrap();
+        let state = symmetric_orbit(&setting.body, theta).unwrap();
         let own = OrbitProblem { energy: Some(setting.body.rod.energy(&state)), ..setting };
         let orbit = find(&own, 2, &state).unwrap();
         assert!(orbit.residual < 1e-12, "{kappa} {theta}: {}", orbit.residual);
@@ -307,7 +307,7 @@ fn a_matched_contact_that_sticks_has_the_symmetric_family_too() {
         let scene = rough("matched", &values);
         let setting = OrbitProblem::of(&scene).unwrap();
         let theta = random.between(-0.5, 0.5);
-        let Some(state) = symmetric(&setting.body, theta) else {
+        let Some(state) = symmetric_orbit(&setting.body, theta) else {
             slides += 1;
             continue;
         };
@@ -347,7 +347,7 @@ fn orbits_with_friction_are_followed_and_are_those_of_the_map() {
     let upright = find(&setting, 1, &setting.upright()).unwrap();
     assert!(off_by_31_digits(&tilting, &upright) < 1e-12 && upright.multipliers.stable == Some(false), "{upright:?}");
     assert!(off_the_jacobian_of(&tilting.model(), &upright) < 1e-9, "{:?}", upright.multipliers);
-    assert_eq!(symmetric(&setting.body, 0.1), None);
+    assert_eq!(symmetric_orbit(&setting.body, 0.1), None);
 }
 
 /// Largest change of a contact over its period by the map with 31 digits, over its speed.

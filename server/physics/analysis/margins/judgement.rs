@@ -2,9 +2,10 @@
 //! Margins of the gain of a table are found by the same search.
 
 use crate::analysis::evidence::{self, Evidence};
-use crate::analysis::limits::{Bracket, Limit, LimitKind, Limits, Moving, Parameter, limits_of};
+use crate::analysis::limits::{Limit, LimitKind, Limits, Moving, Parameter, limits_of};
 use crate::analysis::nonlinear_run::{NonlinearRun, run_nonlinear};
 use crate::analysis::repeating::{RepeatingBounce, SceneMap};
+use crate::analysis::root::Bracket;
 use crate::analysis::small_deviations::small_deviations;
 use crate::analysis::verdict::{DecidedBy, Verdict};
 use crate::run::ending::{Ending, EndingKind};

@@ -6,6 +6,7 @@ use crate::analysis::periodic_orbits::orbit::{
     ClosedOrbit, OrbitFailure, ParameterPath, PeriodicOrbit, ScaledPoint, SearchPlane, at_share, correct, share_of,
     symmetric_orbit_on_path, with_fewer_conditions,
 };
+use crate::analysis::root::root;
 use crate::map::body::PreImpact;
 use crate::map::strike::State;
 use crate::scene::{Name, Scene};
@@ -21,6 +22,8 @@ const LARGEST_TURN: f64 = 0.97;
 const EASY: u32 = 3;
 /// Most changes that are located.
 const MOST_CHANGES: usize = 32;
+/// Value of a test up to which it is 0.
+const ZERO: f64 = 1e-14;
 /// Difference between orbit and half-way orbit, in parts of the scales, under which they are the same.
 const HALVED: f64 = 1e-6;
 
@@ -93,7 +96,7 @@ pub fn follow(
     let mut trail = BranchFollower { path: &path, period, budget: points.saturating_sub(1), changes: MOST_CHANGES };
     let own = trail.point(&first, None)?;
     let BranchStart::Symmetric(theta) = start else {
-        let (mut after, end) = trail.walk(&first, lead(path.direction(path.components.len(), 1.0))?, &mut go_on)?;
+        let (mut after, end) = trail.walk(&first, lead(path.direction(path.size(), 1.0))?, &mut go_on)?;
         after.insert(0, own);
         return Ok(Branch { points: after, start: 0, ends: vec![end] });
     };
@@ -250,7 +253,7 @@ impl BranchFollower<'_> {
         let mut at_a = test(a)?.0;
         for _ in 0..40 {
             let (at_b, half) = test(b)?;
-            if at_b.abs() < 1e-14 || at_b == at_a || (b - a).abs() < 1e-16 {
+            if at_b.abs() < ZERO || at_b == at_a || (b - a).abs() < 1e-16 {
                 let whole = self.at_share(half.place, b, self.period).ok()?;
                 let point = self.point(&whole, Some(Bifurcation::PeriodDoubling)).ok()?;
                 return Some(BranchPoint { springs: true, ..point });
@@ -288,38 +291,21 @@ impl BranchFollower<'_> {
         points.extend(found.into_iter().map(|(_, point)| point));
     }
 
-    /// Zero of a test along the branch, by the rule of false position in Illinois form, with bisection where it creeps.
+    /// Zero of a test along the branch, and how far along it is.
     fn zero(&self, here: &Walked, next: &Walked, kind: Bifurcation) -> Option<(f64, ClosedOrbit)> {
         let test = |orbit: &PeriodicOrbit| orbit.multipliers.test(kind);
-        let (low, tangent) = (test(&here.orbit), &here.leads);
-        let (mut a, mut at_a, mut place_a) = (0.0, low, here.solution.place.clone());
-        let mut place_b = next.solution.place.clone();
-        let (mut b, mut at_b) = (tangent.dot(&(&place_b - &place_a)), test(&next.orbit));
-        let mut best = None;
-        for turn in 0..80 {
-            let s = if turn % 8 == 7 { 0.5 * (a + b) } else { (a * at_b - b * at_a) / (at_b - at_a) };
-            if !(s > a.min(b) && s < a.max(b)) {
-                break;
-            }
-            let point = &here.solution.place + tangent * s;
-            let guess = &place_a + (&place_b - &place_a) * ((s - a) / (b - a));
-            let solution =
-                correct(self.path, self.period, &guess, &SearchPlane { normal: tangent.clone(), point }).ok()?;
-            let value = test(&self.point(&solution, None).ok()?.orbit);
-            let place = solution.place.clone();
-            let done = value.abs() < 1e-14 || (b - a).abs() < 1e-14;
-            best = Some((s, solution));
-            if done {
-                break;
-            }
-            if (value < 0.0) == (low < 0.0) {
-                (a, at_a, place_a) = (s, value, place);
-                at_b *= 0.5;
-            } else {
-                (b, at_b, place_b) = (s, value, place);
-                at_a *= 0.5;
-            }
-        }
-        best
+        let (start, tangent) = (&here.solution.place, &here.leads);
+        let chord = &next.solution.place - start;
+        let way = tangent.dot(&chord);
+        let mut last = None;
+        root([(way, test(&next.orbit)), (0.0, test(&here.orbit))], ZERO, |s| {
+            let plane = SearchPlane { normal: tangent.clone(), point: start + tangent * s };
+            let solution = correct(self.path, self.period, &(start + &chord * (s / way)), &plane)?;
+            let value = test(&self.point(&solution, None)?.orbit);
+            last = Some((s, solution));
+            Ok::<_, OrbitFailure>(Some(value))
+        })
+        .ok()?;
+        last
     }
 }

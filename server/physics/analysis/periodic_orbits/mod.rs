@@ -9,4 +9,4 @@ pub mod branch;
 pub mod multipliers;
 mod orbit;
 
-pub use orbit::{OrbitFailure, OrbitProblem, PeriodicOrbit, find, find_at_theta, symmetric};
+pub use orbit::{OrbitFailure, OrbitProblem, PeriodicOrbit, find, find_at_theta};
