@@ -75,7 +75,7 @@ impl ModelChoice {
         if method != RunMethod::Linear {
             return Self::of(scene);
         }
-        let reason = "the linear solution is accurate enough here, or was asked for: the angle block in closed form";
+        let reason = "the linear solution is accurate enough here, or was asked for: the angle block of the linear map";
         Self { name: ModelLevel::Linear.name(), reason: reason.to_owned(), forced: Vec::new() }
     }
 }

@@ -113,7 +113,7 @@ pub fn run_by(
     match method {
         RunMethod::Linear => match Analysis::LinearRun.lack(scene) {
             Some(Lack { path, .. }) => Err(lacking(path)),
-            None => Ok(run_linear(scene, &LinearSolution::of_scene(scene)?, impacts, visit)),
+            None => Ok(run_linear(scene, LinearSolution::of_scene(scene)?, impacts, visit)),
         },
         RunMethod::Map => {
             let orbit = match scene.orbit() {
@@ -146,17 +146,15 @@ pub fn run_by(
 /// run beside it and the error of that.
 fn run_linear(
     scene: &Scene,
-    solution: &LinearSolution,
+    solution: LinearSolution,
     impacts: u64,
     mut visit: impl FnMut(&ComputedImpact<'_>) -> bool,
 ) -> Option<Ending> {
     let (body, rules) = (scene.running_model(), Rules { topple_angle: scene.topple_angle(), ..Rules::BARE_MAP });
     let rho = body.rod.radius_of_gyration;
     let mut beside = scene.orbit().ok().map(|orbit| (orbit, ErrorEstimate::of_scene(scene, orbit.t())));
-    let mut next = solution.impact(1);
-    for n in 1.. {
-        let LinearImpact { t, x, state } = next;
-        next = solution.impact(n + 1);
+    let mut following = solution.skip(1);
+    for (n, LinearImpact { t, x, state }) in (1..).zip(solution) {
         let coming = ComingContact { t, coming: PreImpact::at(n, x, state), before: None };
         let contact = Orbit::under_way(body, rules, &coming).advance();
         let ending = contact.ending.or_else(|| rules::completed(n, impacts));
@@ -173,7 +171,11 @@ fn run_linear(
         // Too near to an end to say on which side of it the run is.
         let margin = contact.strike.map_or(0.0, |strike| strike.contact_rise.min(-strike.approach));
         let safe = state.theta.abs() < 0.5 * scene.topple_angle() && 10.0 * bound < margin;
-        let contact = Contact { flight_time: ending.is_none().then_some(next.t - t), ending, ..contact };
+        let contact = Contact {
+            flight_time: following.next().filter(|_| ending.is_none()).map(|next| next.t - t),
+            ending,
+            ..contact
+        };
         let error_estimate = if safe { bound } else { f64::INFINITY };
         if !visit(&ComputedImpact { contact, error_estimate, extended: None }) {
             return None;

@@ -8,9 +8,9 @@ use crate::map::strike::EnergyFeedback;
 /// An analysis that does not take every scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Analysis {
-    /// Motion of a run by closed forms of small deviations.
+    /// Motion of a run by the linear map of small deviations.
     LinearSolution,
-    /// A whole run by them, with its ending.
+    /// A whole run by it, with its ending.
     LinearRun,
     /// Derivative of the map at its fixed point.
     JacobianAtFixedPoint,

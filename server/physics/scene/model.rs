@@ -21,7 +21,7 @@ use crate::scene::{AIR, ERRORS, GAINS, Name, Scene, Striking, VERTICES};
 pub enum ModelLevel {
     /// A point mass without anything beyond it.
     Point,
-    /// The angle block of the linearized rod, in closed form.
+    /// The linearized rod.
     Linear,
     /// The rod without friction, on a table that looks at its angle and velocities.
     Rod,
