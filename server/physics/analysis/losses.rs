@@ -8,12 +8,12 @@ use crate::analysis::boundary::loss_kind;
 use crate::analysis::fixed_point::{FixedPoint, is_plain};
 use crate::analysis::gain_range::StableGains;
 use crate::analysis::jacobian::modulus;
-use crate::analysis::limits::{Limit, LimitKind, Limits, Moving, NoLimits, Parameter, limits_of};
+use crate::analysis::limits::{LimitKind, Limits, NoLimits, Parameter, limits_of};
 use crate::analysis::linear_verdict::PARABOLIC;
 use crate::analysis::normal_form::CriticalForm;
 use crate::analysis::periodic_orbits::multipliers::Bifurcation;
 use crate::analysis::repeating::{self, RepeatingBounce, find_planned};
-use crate::analysis::return_map::{ReturnMap, Y_DOT};
+use crate::analysis::return_map::{ReturnMap, Vector, Y_DOT};
 use crate::analysis::small_deviations::{Motion, SmallDeviations};
 use crate::scene::Scene;
 use nalgebra::Complex;
@@ -107,9 +107,13 @@ pub fn losses(scene: &Scene, small: &SmallDeviations, boundary: Option<f64>) -> 
         ends.extend(near.map(|(factor, _)| (Parameter::FeedbackFactor, factor, None)));
     }
     let bifurcation = Bifurcation::PeriodDoubling;
+    let at = ReturnMap::new(&scene.model(), 1).vector(&fixed_point.state(), fixed_point.x);
     let losses = ends.into_iter().map(|(end, value, coefficient)| match coefficient {
         Some(coefficient) => Ok(StabilityLoss { end, value, bifurcation, coefficient, settles: None }),
-        None => loss_at(scene, fixed_point, end, value),
+        None => {
+            let near = (end != Parameter::FeedbackFactor).then_some(Complex::new(-1.0, 0.0));
+            loss_at(scene, &at, end, value, near)
+        }
     });
     settled(scene, small, losses)
 }
@@ -120,6 +124,8 @@ pub fn search_ends(scene: &Scene, small: &mut SmallDeviations, go_on: &mut dyn F
     let is_known = model.is_point || small.found.as_ref().is_none_or(|bounce| bounce.stable_gains().is_some());
     let gain = (!is_known).then(|| model.feedback().map_or(Parameter::TILT_GAIN, |_| Parameter::FeedbackFactor));
     let steers = model.rod.strike_gain_per_energy != 0.0 && small.linear.upper_energy_gain.is_infinite();
+    let at = small.found.as_ref().map(|bounce| bounce.at);
+    let at = at.unwrap_or_else(|| ReturnMap::new(&model, 1).vector(&small.state(), small.fixed_point.x));
     let mut losses = Vec::new();
     for end in gain.into_iter().chain(steers.then_some(Parameter::ENERGY_GAIN)) {
         let mut tried = 0;
@@ -152,7 +158,10 @@ pub fn search_ends(scene: &Scene, small: &mut SmallDeviations, go_on: &mut dyn F
             (Parameter::Field(_), true) => [None, upper],
             (Parameter::Field(_), false) => [lower, None],
         };
-        losses.extend(near.iter().flatten().filter_map(|limit| loss_at_limit(scene, end, limit)));
+        losses.extend(near.iter().flatten().filter_map(|limit| match limit.kind {
+            LimitKind::Eigenvalue(near) => Some(loss_at(scene, &at, end, limit.value, Some(near))),
+            _ => None,
+        }));
     }
     Some(settled(scene, small, losses))
 }
@@ -189,41 +198,23 @@ impl StabilityLoss {
     }
 }
 
-/// The loss where a gain has a critical value, about the bounce of a fixed point.
-fn loss_at(scene: &Scene, fixed_point: &FixedPoint, end: Parameter, value: f64) -> Result<StabilityLoss, String> {
-    let there = end.moved(scene, value).map_err(|why| note(end, &why))?;
-    let map = ReturnMap::new(&there.model(), 1);
-    let at = map.vector(&fixed_point.state(), fixed_point.x);
-    let bounce = find_planned(&map, &at, &at).map_err(|_| note(end, "no bounce repeats there"))?;
-    let near = (end != Parameter::FeedbackFactor).then_some(Complex::new(-1.0, 0.0));
-    loss(&there, &bounce, end, value, near)
-}
-
 fn note(end: Parameter, why: &str) -> String {
     format!("loss_of_stability says nothing of {}: {why}", end.name())
 }
 
-/// The loss at a limit at which an eigenvalue leaves the unit circle; `None` at others.
-fn loss_at_limit(scene: &Scene, end: Parameter, limit: &Limit) -> Option<Result<StabilityLoss, String>> {
-    let LimitKind::Eigenvalue(near) = limit.kind else { return None };
-    let mut always = || true;
-    let moving = Moving::new(scene, end, &mut always);
-    let bounce = moving.bounce(limit.value, &moving.own).map_err(|_| note(end, "no bounce repeats there"));
-    Some(bounce.and_then(|bounce| {
-        let there = end.moved(scene, limit.value).map_err(|why| note(end, &why))?;
-        loss(&there, &bounce, end, limit.value, Some(near))
-    }))
-}
-
-/// The loss at a bounce of a scene with the critical value, where an eigenvalue is near to one on the unit circle.
-fn loss(
+/// The loss where a gain has a critical value, about the bounce near a state, whose kept quantities it has, for the eigenvalue near to one on the
+/// unit circle or the one nearest to the circle.
+fn loss_at(
     scene: &Scene,
-    bounce: &RepeatingBounce,
+    at: &Vector,
     end: Parameter,
     value: f64,
     near: Option<Complex<f64>>,
 ) -> Result<StabilityLoss, String> {
-    let form = CriticalForm::new(scene, end, bounce, near).map_err(|why| note(end, why))?;
+    let there = end.moved(scene, value).map_err(|why| note(end, &why))?;
+    let map = ReturnMap::of_cycle(&there.model());
+    let bounce = find_planned(&map, at, at).map_err(|_| note(end, "no bounce repeats there"))?;
+    let form = CriticalForm::new(&there, end, &bounce, near).map_err(|why| note(end, why))?;
     let CriticalForm { bifurcation, growth, branch, pumped } = form;
     if pumped != 0.0 {
         return Err(note(end, "a motion there moves a kept quantity"));
