@@ -7,7 +7,9 @@
 //! from a value on, that is a limit too.
 
 use crate::analysis::jacobian::modulus;
-use crate::analysis::repeating::{NoRepeatingBounce, ON_CIRCLE, RepeatingBounce, SceneMap, find_planned, upright};
+use crate::analysis::repeating::{
+    NoRepeatingBounce, ON_CIRCLE, ON_CIRCLE_TWICE, RepeatingBounce, SceneMap, find_planned, upright,
+};
 use crate::analysis::return_map::{COMPONENTS, Vector, X};
 use crate::analysis::root::{Bracket, root};
 use crate::analysis::small_deviations::settled_bounce;
@@ -30,9 +32,6 @@ const TO_REST: usize = 8;
 
 /// Distance from ±1 within which two eigenvalues count as one that is double, which rounding moves by its square root.
 const DOUBLE: f64 = 1e-6;
-
-/// Distance of the modulus of such an eigenvalue from 1 up to which it is on the unit circle.
-const ON_CIRCLE_TWICE: f64 = 1e-7;
 
 /// Rounding of a test function at an eigenvalue on the unit circle, in parts of its estimate.
 const OF_ROUNDING: f64 = 1e3;

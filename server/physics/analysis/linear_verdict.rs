@@ -77,12 +77,13 @@ impl LinearVerdict {
 pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> LinearVerdict {
     let speed_squared = fixed_point.speed * fixed_point.speed;
     let Rod { contact_distance, gravity, restitution, tilt_gain, energy_feedback, .. } = scene.running_model.rod;
-    let loop_gain = (1.0 + restitution) * speed_squared;
-    let (energy_eigenvalue, upper_energy_gain) = match energy_feedback {
-        EnergyFeedback::Vertical | EnergyFeedback::Total => (1.0 - scene.energy_gain() * loop_gain, 2.0 / loop_gain),
+    let energy_eigenvalue = match energy_feedback {
+        EnergyFeedback::Vertical | EnergyFeedback::Total => {
+            1.0 - scene.energy_gain() * ((1.0 + restitution) * speed_squared)
+        }
         EnergyFeedback::OneStrike => {
             let assumed = scene.assumed_restitution();
-            ((restitution - assumed) / (1.0 + assumed), f64::INFINITY)
+            (restitution - assumed) / (1.0 + assumed)
         }
     };
     let real = |value: f64| Complex::new(value, 0.0);
@@ -125,20 +126,24 @@ pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> LinearVerdict 
         eigenvalues,
         lower_tilt_gain,
         critical_tilt_gain,
-        upper_energy_gain,
+        upper_energy_gain: upper_energy_gain(scene, fixed_point),
         energy_eigenvalue,
     }
 }
 
-/// 2/((1 + e)V²), s²/m²: the greatest energy gain, at a bounce whose height moves apart from all else. `None` where the flight, a delay, a program
-/// or a lean takes part in it.
-pub(super) fn upper_energy_gain(scene: &Scene, fixed_point: &FixedPoint) -> Option<f64> {
+/// 2/((1 + e)V²), s²/m²: the greatest energy gain, at a bounce whose height moves apart from all else. Infinite where the flight, a delay, a program
+/// or a lean takes part in it, and where the law of the energy has no gain.
+pub(super) fn upper_energy_gain(scene: &Scene, fixed_point: &FixedPoint) -> f64 {
     let body = scene.model();
     let falls_freely = body.drag.is_none_or(|drag| drag.linear == 0.0);
     let is_alone =
         falls_freely && !scene.moves_late() && body.program.is_none() && fixed_point.theta.abs() <= PARABOLIC;
     let has_gain = body.rod.energy_feedback != EnergyFeedback::OneStrike;
-    (is_alone && has_gain).then(|| 2.0 / ((1.0 + body.rod.restitution) * fixed_point.speed * fixed_point.speed))
+    if is_alone && has_gain {
+        2.0 / ((1.0 + body.rod.restitution) * fixed_point.speed * fixed_point.speed)
+    } else {
+        f64::INFINITY
+    }
 }
 
 /// The class of a residue.

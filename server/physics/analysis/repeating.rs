@@ -20,6 +20,9 @@ const MOST_STEPS: usize = 60;
 /// Distance of a modulus from 1 up to which an eigenvalue is on the unit circle.
 pub const ON_CIRCLE: f64 = 1e-9;
 
+/// The same of a double eigenvalue, which rounding moves by its square root.
+pub(super) const ON_CIRCLE_TWICE: f64 = 1e-7;
+
 /// Singular values of A − 1, in parts of the largest, up to which a direction counts as neutral: tried one after the other. Beside a fixed
 /// point those of a family are small and not 0, and other directions may be slow.
 const NEUTRAL: [f64; 5] = [0.05, 1e-3, 1e-5, 1e-8, EXACT];

@@ -7,15 +7,12 @@ use crate::analysis::gain_range::StableGains;
 use crate::analysis::jacobian::{modulus, sort_eigenvalues};
 use crate::analysis::linear_verdict::{AngleClass, LinearVerdict, PARABOLIC, class, linear_verdict, upper_energy_gain};
 use crate::analysis::repeating::{
-    self, Neutral, NoRepeatingBounce, ON_CIRCLE, RepeatingBounce, SceneMap, find_planned, settled,
+    self, Neutral, NoRepeatingBounce, ON_CIRCLE, ON_CIRCLE_TWICE, RepeatingBounce, SceneMap, find_planned, settled,
 };
 use crate::analysis::return_map::{ReturnMap, SOLVED, Vector, X, X_DOT, Y_DOT};
 use crate::map::strike::State;
 use crate::scene::Scene;
 use nalgebra::Complex;
-
-/// Distance of a double eigenvalue from 1 up to which it is on the unit circle: rounding moves it by its square root.
-const ON_CIRCLE_TWICE: f64 = 1e-7;
 
 /// Motion of small deviations beside the neutral directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -164,7 +161,7 @@ fn about(scene: &Scene, bounce: RepeatingBounce, drift: Option<f64>) -> SmallDev
     {
         (linear.lower_tilt_gain, linear.critical_tilt_gain) = (lower, upper);
     }
-    linear.upper_energy_gain = upper_energy_gain(scene, &fixed_point).unwrap_or(f64::INFINITY);
+    linear.upper_energy_gain = upper_energy_gain(scene, &fixed_point);
     // A wind or a table that is level at a speed alone keeps a drift that nothing else does.
     let is_kept = !map.has_place && fixed_point.x_dot.abs() > SOLVED * fixed_point.speed;
     let drifts = drift.is_some() || is_kept;

@@ -3,6 +3,7 @@
 //! The bounce, the model and the gain follow from each other. For most rigs the bounce does not depend on the gain, and one round is enough.
 
 use crate::analysis::fixed_point::FixedPoint;
+use crate::analysis::jacobian::{eigenvalues, modulus};
 use crate::analysis::repeating::{NoRepeatingBounce, RepeatingBounce, find_planned};
 use crate::analysis::return_map::{ARC, PLANNED_SPEED, ReturnMap, SOLVED, SPIN, Vector, X, X_DOT, Y_DOT};
 use crate::analysis::small_deviations::fixed_point_at;
@@ -12,6 +13,7 @@ use crate::map::body::{Body, PreImpact};
 use crate::map::friction::Friction;
 use crate::numbers::rounded::rounded;
 use crate::scene::{FieldError, GAINS, Name, Scene, Value};
+use nalgebra::{Complex, DMatrix};
 
 /// Most rounds in which the bounce and the law are brought together.
 const MOST_ROUNDS: u32 = 40;
@@ -162,15 +164,9 @@ fn refuse(scene: &Scene, at: &Vector) -> Result<(), String> {
 /// The eigenvalue of largest modulus of the height: of ẏ and, where the table has planned its speed before the last strike, of that.
 fn height_eigenvalue(RepeatingBounce { map, matrix, .. }: &RepeatingBounce) -> f64 {
     let even: Vec<usize> = [Y_DOT, PLANNED_SPEED].into_iter().filter_map(|index| map.place_of(index)).collect();
-    let entry = |row: usize, column: usize| matrix[(even[row], even[column])];
-    let value = if let [_, _] = even[..] {
-        let (half, determinant) =
-            (0.5 * (entry(0, 0) + entry(1, 1)), entry(0, 0) * entry(1, 1) - entry(0, 1) * entry(1, 0));
-        let square = half * half - determinant;
-        if square < 0.0 { determinant.sqrt() } else { half + half.signum() * square.sqrt() }
-    } else {
-        entry(0, 0)
-    };
+    let part = DMatrix::from_fn(even.len(), even.len(), |row, column| matrix[(even[row], even[column])]);
+    let largest = eigenvalues(&part).map_or(Complex::new(f64::NAN, 0.0), |values| values[0]);
+    let value = if largest.im == 0.0 { largest.re } else { modulus(largest) };
     if (value - 1.0).abs() <= KEPT { 1.0 } else { value }
 }
 
