@@ -67,17 +67,6 @@ impl OrbitProblem {
         Ok(Self { scene: *scene, body, energy, speed, is_rod, rests: true })
     }
 
-    /// The same with fewer conditions, in the order in which they are tried. What nothing keeps along an orbit has the value that the orbit gives it.
-    fn with_fewer_conditions(self) -> Vec<Self> {
-        if self.is_rod {
-            return vec![self];
-        }
-        let free = Self { energy: None, ..self };
-        let mut tried = vec![self, free, Self { rests: false, ..self }, Self { rests: false, ..free }];
-        tried.dedup();
-        tried
-    }
-
     /// The upright bounce, which is the orbit of period 1; with a program, the bounce before its first strike.
     pub fn upright(&self) -> State {
         State { theta: 0.0, x_dot: 0.0, y_dot: -self.speed, theta_dot: 0.0 }
@@ -505,44 +494,46 @@ fn on_kink(problem: &OrbitProblem, contacts: &[PreImpact]) -> bool {
         })
 }
 
-/// Seeks an orbit on a path, with fewer conditions where it has none with all. Fails as the first search does.
+/// Seeks an orbit on a path, of other bodies than the rod with fewer conditions where there is none with all: what nothing keeps along an orbit has the
+/// value that the orbit gives it. Fails as the first search does.
 pub(super) fn with_fewer_conditions(
     path: &mut ParameterPath,
     mut seek: impl FnMut(&ParameterPath) -> Result<ClosedOrbit, OrbitFailure>,
 ) -> Result<ClosedOrbit, OrbitFailure> {
-    let mut first = None;
-    for start in path.start.with_fewer_conditions() {
-        let tried = ParameterPath { start, ..path.clone() };
-        match seek(&tried) {
-            Ok(found) => {
-                *path = tried;
-                return Ok(found);
-            }
-            Err(failure) => first = first.or(Some(failure)),
+    let all = path.start;
+    let first = seek(path);
+    if first.is_ok() || all.is_rod {
+        return first;
+    }
+    for (energy, rests) in [(None, true), (all.energy, false), (None, false)] {
+        path.start = OrbitProblem { energy, rests, ..all };
+        if let Ok(found) = seek(path) {
+            return Ok(found);
         }
     }
-    Err(first.unwrap_or(OrbitFailure::Cancelled))
+    first
 }
 
 /// The orbit of `period` contacts near a state, at the problem's energy and without drift. Where the body keeps neither along its orbits, those are
 /// what the orbit gives them.
 pub fn find(problem: &OrbitProblem, period: usize, guess: &State) -> Result<PeriodicOrbit, OrbitFailure> {
-    find_in(problem, period, |path| SearchPlane::at_parameter(path.place(&PreImpact::at(1, 0.0, *guess), 0.0)))
+    find_in(problem, period, guess, SearchPlane::at_parameter)
 }
 
 /// The orbit near a state with its angle at the first contact, at the energy that it has.
 pub fn find_at_theta(problem: &OrbitProblem, period: usize, guess: &State) -> Result<PeriodicOrbit, OrbitFailure> {
-    let free = OrbitProblem { energy: None, ..*problem };
-    find_in(&free, period, |path| SearchPlane::at(0, path.place(&PreImpact::at(1, 0.0, *guess), 0.0)))
+    find_in(&OrbitProblem { energy: None, ..*problem }, period, guess, |point| SearchPlane::at(0, point))
 }
 
+/// The orbit near a state, in a plane through its point.
 fn find_in(
     problem: &OrbitProblem,
     period: usize,
-    plane: impl Fn(&ParameterPath) -> SearchPlane,
+    guess: &State,
+    plane: fn(ScaledPoint) -> SearchPlane,
 ) -> Result<PeriodicOrbit, OrbitFailure> {
     let mut path = ParameterPath::resting(*problem);
-    let plane = plane(&path);
+    let plane = plane(path.place(&PreImpact::at(1, 0.0, *guess), 0.0));
     let solution = with_fewer_conditions(&mut path, |path| correct(path, period, &plane.point, &plane))?;
     PeriodicOrbit::new(problem, &solution)
 }
