@@ -140,7 +140,7 @@ pub(super) fn upper_energy_gain(scene: &Scene, fixed_point: &FixedPoint) -> f64 
         falls_freely && !scene.moves_late() && body.program.is_none() && fixed_point.theta.abs() <= PARABOLIC;
     let has_gain = body.rod.energy_feedback != EnergyFeedback::OneStrike;
     if is_alone && has_gain {
-        2.0 / ((1.0 + body.rod.restitution) * fixed_point.speed * fixed_point.speed)
+        2.0 / ((1.0 + body.rod.restitution) * (fixed_point.speed * fixed_point.speed))
     } else {
         f64::INFINITY
     }

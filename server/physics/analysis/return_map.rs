@@ -66,11 +66,6 @@ pub(crate) fn contact_of<N: Number>(n: u64, parts: Vector<N>, is_point: bool, pl
     PreImpact { plan, ..PreImpact::at(n, x, state) }
 }
 
-/// A state that moves along the direction of each of its components.
-pub(crate) fn varied<const K: usize>(at: &Vector) -> Vector<Dual<K>> {
-    std::array::from_fn(|index| Dual::along(at[index], index, 1.0))
-}
-
 /// The return map of a body over some bounces.
 #[derive(Clone, Copy, Debug)]
 pub struct ReturnMap {
@@ -105,12 +100,6 @@ impl ReturnMap {
     /// The map of a body without random errors over one bounce, or over the heights of its program.
     pub fn of_cycle(body: &Body) -> Self {
         Self::new(body, body.program.map_or(1, |program| program.heights().len() as u64))
-    }
-
-    /// The same map over so many bounces.
-    #[must_use]
-    pub(crate) fn over(self, period: u64) -> Self {
-        Self { period, ..self }
     }
 
     /// The same map whose table plans each motion before the last strike, since its delay is longer than a flight.
@@ -170,8 +159,7 @@ impl ReturnMap {
         self.contact(vector).state
     }
 
-    /// The contact of a vector.
-    pub(crate) fn contact<N: Number>(&self, vector: &Vector<N>) -> PreImpact<N> {
+    fn contact<N: Number>(&self, vector: &Vector<N>) -> PreImpact<N> {
         let (rho, mut parts) = (N::from_f64(self.body.rod.radius_of_gyration), *vector);
         (parts[ARC], parts[SPIN]) = (parts[ARC] / rho, parts[SPIN] / rho);
         contact_of(1, parts, self.body.is_point, self.plans)
@@ -245,14 +233,15 @@ impl ReturnMap {
 
     /// The map and its derivative at a state; `None` as in [`ReturnMap::image`].
     pub fn derivative(&self, at: &Vector) -> Option<DifferentiatedMap> {
-        let end = self.image(&varied::<COMPONENTS>(at))?;
+        let start: Vector<Dual<COMPONENTS>> = std::array::from_fn(|index| Dual::along(at[index], index, 1.0));
+        let end = self.image(&start)?;
         let matrix = self.rates(&end);
         let is_finite = matrix.iter().all(|entry| entry.is_finite());
         is_finite.then(|| DifferentiatedMap { image: end.map(|number| number.value), matrix })
     }
 
-    /// Derivatives of an image by the components of the map, in their order, for a start that is [`varied`].
-    pub(crate) fn rates<const K: usize>(&self, end: &Vector<Dual<K>>) -> DMatrix<f64> {
+    /// Derivatives of an image by the components of the map, in their order, for a start that moves along each of them.
+    pub(crate) fn rates(&self, end: &Vector<Dual<COMPONENTS>>) -> DMatrix<f64> {
         let components = self.components();
         let size = components.len();
         DMatrix::from_fn(size, size, |row, column| end[components[row]].partials[components[column]])

@@ -96,7 +96,7 @@ pub fn follow(
     let mut trail = BranchFollower { path: &path, period, budget: points.saturating_sub(1), changes: MOST_CHANGES };
     let own = trail.point(&first, None)?;
     let BranchStart::Symmetric(theta) = start else {
-        let (mut after, end) = trail.walk(&first, lead(path.direction(path.size(), 1.0))?, &mut go_on)?;
+        let (mut after, end) = trail.walk(&first, lead(path.direction(path.components.len(), 1.0))?, &mut go_on)?;
         after.insert(0, own);
         return Ok(Branch { points: after, start: 0, ends: vec![end] });
     };

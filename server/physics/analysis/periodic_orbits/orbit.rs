@@ -8,12 +8,12 @@ use crate::analysis::jacobian::jacobian_at;
 use crate::analysis::limits::Parameter;
 use crate::analysis::periodic_orbits::multipliers::Multipliers;
 use crate::analysis::repeating::SceneMap;
-use crate::analysis::return_map::{COMPONENTS, ReturnMap, Vector, Y_DOT, varied};
+use crate::analysis::return_map::{COMPONENTS, ReturnMap, SPIN, X, Y_DOT, contact_of, parts};
 use crate::analysis::small_deviations::small_deviations;
 use crate::map::body::{Body, PreImpact};
 use crate::map::strike::{EnergyFeedback, Rod, State};
 use crate::numbers::dual::Dual;
-use crate::numbers::number::Arithmetic;
+use crate::numbers::number::{Arithmetic, Number};
 use crate::run::ending::Ending;
 use crate::run::orbit::{ComingContact, Orbit};
 use crate::run::rules::Rules;
@@ -101,10 +101,11 @@ pub(super) struct ParameterPath {
     pub(super) start: OrbitProblem,
     from: f64,
     to: f64,
-    /// The map of the first problem over one bounce, with every component that the last one has too.
-    map: ReturnMap,
-    /// Scales of its components: 1 rad and the speed of the scene.
-    scales: DVector<f64>,
+    /// Indices of the components of a contact: θ, ẋ, ẏ, θ̇, x where strikes depend on it, tilt and velocities of a table that plans before the last
+    /// strike.
+    pub(super) components: Vec<usize>,
+    /// Scales of all components: rad, m/s, m/s, rad/s, m, rad, m/s and m/s.
+    scales: [f64; COMPONENTS],
 }
 
 impl ParameterPath {
@@ -119,25 +120,24 @@ impl ParameterPath {
     }
 
     fn between(start: OrbitProblem, end: OrbitProblem, name: Option<Name>, [from, to]: [f64; 2]) -> Self {
-        let mut map = ReturnMap::new(&start.body, 1);
-        for OrbitProblem { body, speed, .. } in [start, end] {
-            map.has_place |= ReturnMap::new(&body, 1).has_place;
-            map.plans |= body.lag > LONG_DELAY * 2.0 * speed / body.rod.gravity;
-        }
+        let maps = [start, end].map(|problem| {
+            let map = ReturnMap::new(&problem.body, 1);
+            let is_late = problem.body.lag > LONG_DELAY * 2.0 * problem.speed / problem.body.rod.gravity;
+            if is_late { map.planning() } else { map }.components()
+        });
+        let components = (0..COMPONENTS).filter(|index| maps.iter().any(|map| map.contains(index))).collect();
         let (speed, Rod { gravity, radius_of_gyration, .. }) = (start.speed, start.body.rod);
-        let flown = 2.0 * speed * speed / gravity;
-        let scales = map.reduced(&[radius_of_gyration, speed, speed, speed, flown, 1.0, speed, speed]);
-        Self { name, start, from, to, map, scales }
+        let scales = [1.0, speed, speed, speed / radius_of_gyration, 2.0 * speed * speed / gravity, 1.0, speed, speed];
+        Self { name, start, from, to, components, scales }
     }
 
-    /// Number of components of a contact.
-    pub(super) fn size(&self) -> usize {
-        self.scales.len()
+    fn plans(&self) -> bool {
+        self.components.contains(&(X + 1))
     }
 
     /// The direction of a component, or at the end of the share.
     pub(super) fn direction(&self, component: usize, sign: f64) -> ScaledPoint {
-        let mut direction = ScaledPoint::zeros(self.size() + 1);
+        let mut direction = ScaledPoint::zeros(self.components.len() + 1);
         direction[component] = sign;
         direction
     }
@@ -180,14 +180,21 @@ impl ParameterPath {
 
     /// The point of a contact, with the motion that the table plans for it where it plans.
     pub(super) fn place(&self, contact: &PreImpact, share: f64) -> ScaledPoint {
-        let at = self.map.vector_of(contact);
-        let at = if contact.plan.is_some() { at } else { self.map.planned(&at) };
-        self.map.reduced(&at).component_div(&self.scales).push(share)
+        let PreImpact { x, state, .. } = contact;
+        let own = || self.start.body.planned_motion(1, *x, state, 0.0, f64::INFINITY);
+        let plan = contact.plan.or_else(|| self.plans().then(own));
+        let all = parts(&PreImpact { plan, ..*contact });
+        let scaled = self.components.iter().map(|&index| all[index] / self.scales[index]);
+        ScaledPoint::from_vec(scaled.chain([share]).collect())
     }
 
-    /// The state of a point.
-    fn state(&self, place: &ScaledPoint) -> Vector {
-        self.map.moved(&[0.0; COMPONENTS], &place.rows(0, self.size()).component_mul(&self.scales))
+    /// The contact of a point, in numbers made of the parts by their places in the point.
+    fn contact<N: Number>(&self, place: &ScaledPoint, lift: impl Fn(f64, usize, f64) -> N) -> PreImpact<N> {
+        let mut parts = [N::from_f64(0.0); COMPONENTS];
+        for (position, &index) in self.components.iter().enumerate() {
+            parts[index] = lift(place[position] * self.scales[index], position, self.scales[index]);
+        }
+        contact_of(1, parts, !self.components.contains(&SPIN), self.plans())
     }
 }
 
@@ -234,6 +241,8 @@ const MOST_HALVINGS: u32 = 6;
 /// Difference of two states, in parts of the scales, up to which they are the same for the least period.
 const SAME: f64 = 1e-7;
 
+type Derived = Dual<MOST>;
+
 /// The equations at a place, with their derivatives by its components.
 #[derive(Clone, Debug)]
 pub(super) struct ClosedEquations {
@@ -251,8 +260,7 @@ impl ClosedEquations {
     fn new(path: &ParameterPath, period: usize, place: &ScaledPoint) -> Result<Self, OrbitFailure> {
         let share = share_of(place);
         let problem = path.problem(share)?;
-        let at = path.state(place);
-        let coming = ComingContact { t: 0.0, coming: path.map.contact(&at), before: None };
+        let coming = ComingContact { t: 0.0, coming: path.contact(place, |value, _, _| value), before: None };
         let mut orbit = Orbit::under_way(problem.body, Rules::BARE_MAP, &coming);
         let mut contacts = Vec::with_capacity(period);
         for contact in 1..=period as u64 {
@@ -261,43 +269,44 @@ impl ClosedEquations {
                 return Err(OrbitFailure::Ends { contact, ending });
             }
         }
-        if orbit.coming().plan.is_some() && !path.map.plans {
+        if orbit.coming().plan.is_some() && !path.plans() {
             let why = "a flight is shorter than table.delay, and others are not".to_owned();
             return Err(OrbitFailure::Scene(why));
         }
         let beyond = || OrbitFailure::Scene("the derivative over the period is beyond double precision".to_owned());
-        let map = path.map.over(period as u64);
         let body = path.body(&problem);
-        let start = varied::<MOST>(&at);
-        let first = map.contact(&start);
+        let map = ReturnMap::new(&problem.body, period as u64);
+        let map = if path.plans() { map.planning() } else { map };
+        let first = path.contact(place, Dual::along);
         let (last, t) = map.passed(&body, first).ok_or_else(beyond)?;
-        let end = map.vector_of(&last);
-        let (components, scales, speed) = (map.components(), &path.scales, path.start.speed);
-        let number = Dual::from_f64;
-        let returns = components.iter().zip(scales.iter());
-        let mut equations: Vec<Dual<MOST>> =
-            returns.map(|(&index, &scale)| (end[index] - start[index]) / number(scale)).collect();
+        let number = Derived::from_f64;
+        let (components, scales, speed) = (&path.components, path.scales, path.start.speed);
+        let (before, after) = (parts(&first), parts(&last));
+        let mut equations: Vec<Derived> =
+            components.iter().map(|&index| (after[index] - before[index]) / number(scales[index])).collect();
         let drift = (last.x - first.x) / t;
         if problem.rests {
             equations.push(drift / number(speed));
         }
         if let Some(energy) = problem.energy {
-            let wanted = Dual::along(energy, MOST - 1, path.energy_rate(share)?);
-            equations.push((body.energy(&first.state) - wanted) / number(speed * speed));
+            let rod = &body.rod;
+            let State { theta, x_dot, y_dot, theta_dot } = first.state;
+            let turn = rod.radius_of_gyration * theta_dot;
+            let (_, versine) = theta.sin_versine();
+            let own = number(0.5) * (x_dot * x_dot + y_dot * y_dot + turn * turn)
+                + rod.gravity * rod.contact_distance * (number(1.0) - versine);
+            equations.push((own - Dual::along(energy, MOST - 1, path.energy_rate(share)?)) / number(speed * speed));
         }
         let finite =
-            |equation: &Dual<MOST>| equation.value.is_finite() && equation.partials.iter().all(|part| part.is_finite());
+            |equation: &Derived| equation.value.is_finite() && equation.partials.iter().all(|part| part.is_finite());
         if !equations.iter().all(finite) {
             return Err(beyond());
         }
         let size = components.len();
-        let rate = |row: usize, column: usize| match equations[row].partials {
-            partials if column == size => partials[MOST - 1],
-            partials => partials[components[column]] * scales[column],
-        };
+        let part = |row: usize, column: usize| equations[row].partials[if column == size { MOST - 1 } else { column }];
         Ok(Self {
             remainder: DVector::from_iterator(equations.len(), equations.iter().map(|equation| equation.value)),
-            derivative: DMatrix::from_fn(equations.len(), size + 1, rate),
+            derivative: DMatrix::from_fn(equations.len(), size + 1, part),
             contacts,
             drift: drift.value,
             flight_time: t.value,
