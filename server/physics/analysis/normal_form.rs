@@ -7,8 +7,8 @@
 //!
 //! Along the neutral directions h has what keeps the kept quantities to second order: k·h + ½Q(q, q) = 0. Q is that of the energy, if strikes keep
 //! it. At a double eigenvalue −1, with Aq₁ = −q₁ + q, it follows from the map: Q(q, q) = k·B(q, q₁). New orbits branch off along
-//! ν − ν_c = γξ², γ = −p·T/p·A_νq, with A_ν the derivative of A along the bounces that repeat. Third derivatives come from truncated Taylor
-//! numbers ([`crate::numbers::taylor`]).
+//! ν − ν_c = γξ², γ = −p·T/p·A_νq, with A_ν the derivative of A along the bounces that repeat. Third derivatives come from dual numbers over
+//! dual numbers over dual numbers ([`ThirdOrder`]).
 
 use crate::analysis::jacobian::modulus;
 use crate::analysis::limits::Parameter;
@@ -17,8 +17,8 @@ use crate::analysis::repeating::{RepeatingBounce, energy_gradient, keeps_energy}
 use crate::analysis::return_map::{ARC, Y_DOT};
 use crate::analysis::swing::{SwingForm, bilinear, paired, split};
 use crate::map::body::Body;
+use crate::numbers::dual::ThirdOrder;
 use crate::numbers::number::Arithmetic;
-use crate::numbers::taylor::Taylor;
 use crate::scene::{GAINS, Scene};
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -54,7 +54,7 @@ type AtOne<'a> = Option<(&'a DVector<f64>, &'a DVector<f64>)>;
 struct Critical<'a> {
     bounce: &'a RepeatingBounce,
     /// The body with the number as Y.
-    body: Body<Taylor>,
+    body: Body<ThirdOrder<2>>,
 }
 
 impl CriticalForm {
@@ -71,9 +71,9 @@ impl CriticalForm {
         let eigenvalue =
             *nearest.filter(|value| away(value) < AT_LIMIT).ok_or("no eigenvalue is at the unit circle")?;
         let body = scene.body_by(|name, value| match parameter {
-            Parameter::Field(moved) if moved == name => Taylor::linear(value, 0.0, 1.0),
-            Parameter::FeedbackFactor if GAINS.contains(&name) => Taylor::linear(value, 0.0, value),
-            Parameter::Field(_) | Parameter::FeedbackFactor => Taylor::from_f64(value),
+            Parameter::Field(moved) if moved == name => ThirdOrder::linear(value, [0.0, 1.0]),
+            Parameter::FeedbackFactor if GAINS.contains(&name) => ThirdOrder::linear(value, [0.0, value]),
+            Parameter::Field(_) | Parameter::FeedbackFactor => ThirdOrder::from_f64(value),
         });
         let own = &bounce.map.body;
         let body = Body { turning: body.turning.filter(|_| own.turning.is_some()), noise: None, outline: None, ..body };
@@ -88,9 +88,17 @@ impl CriticalForm {
 
 impl Critical<'_> {
     /// The image of s* + uX + vY + hX² for the number moved by Y, as coefficients of a monomial.
-    fn image(&self, u: &DVector<f64>, v: &DVector<f64>, h: &DVector<f64>, term: impl Fn(&Taylor) -> f64) -> Found {
+    fn image(
+        &self,
+        u: &DVector<f64>,
+        v: &DVector<f64>,
+        h: &DVector<f64>,
+        term: impl Fn(&ThirdOrder<2>) -> f64,
+    ) -> Found {
         let RepeatingBounce { map, at, .. } = self.bounce;
-        let image = map.expanded(&self.body, at, [u, v], |place| [h[place], 0.0, 0.0]);
+        let varied =
+            |place: usize, value| ThirdOrder::linear(value, [u[place], v[place]]).plus_quadratic([h[place], 0.0, 0.0]);
+        let image = map.expanded(&self.body, at, varied);
         let image = image.ok_or("the map has no third derivatives there")?;
         Ok(DVector::from_iterator(image.len(), image.iter().map(term)))
     }
@@ -100,7 +108,7 @@ impl Critical<'_> {
         let none = DVector::zeros(q.len());
         let moved = self.image(&none, &none, &none, |it| it.first()[1])?;
         let along = self.solve(&(self.bounce.beside() * moved), critical)?;
-        self.image(q, &along, &none, |it| it.second()[1])
+        self.image(q, &along, &none, |it| it.value.second()[1])
     }
 
     /// h with (1 − A)h = right side beside the neutral directions, and beside a critical one of eigenvalue 1.
@@ -171,7 +179,7 @@ impl Critical<'_> {
             return Err("the eigenvalue 1 is double");
         }
         let none = DVector::zeros(size);
-        let half_square = self.image(&q, &none, &none, |it| it.second()[0])?;
+        let half_square = self.image(&q, &none, &none, |it| it.value.second()[0])?;
         let overlap = p.dot(&q);
         let rate = p.dot(&self.rate(&q, critical)?);
         if let Some((q, p)) = critical {

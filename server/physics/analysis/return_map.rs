@@ -6,8 +6,7 @@ use crate::map::body::{Body, PreImpact};
 use crate::map::flight::Flight;
 use crate::map::strike::{PlannedTableMotion, State};
 use crate::numbers::dual::Dual;
-use crate::numbers::number::{Arithmetic, Number};
-use crate::numbers::taylor::Taylor;
+use crate::numbers::number::Number;
 use crate::run::orbit::Orbit;
 use crate::run::rules::Rules;
 use nalgebra::{DMatrix, DVector};
@@ -260,18 +259,17 @@ impl ReturnMap {
         columns.map(|columns| DMatrix::from_columns(&columns))
     }
 
-    /// Coefficients of the image of s + uX + vY + h₀X² + h₁XY + h₂Y² by a body whose numbers may vary with X and Y, for each component of the map
-    /// with its `bend` h; `None` as in [`ReturnMap::image`].
-    pub(crate) fn expanded(
+    /// The image of a state some of whose components vary, as `varied` says for the value of each component of the map, by a body whose numbers may
+    /// vary too; `None` as in [`ReturnMap::image`].
+    pub(crate) fn expanded<N: Number>(
         &self,
-        body: &Body<Taylor>,
+        body: &Body<N>,
         at: &Vector,
-        [u, v]: [&DVector<f64>; 2],
-        bend: impl Fn(usize) -> [f64; 3],
-    ) -> Option<Vec<Taylor>> {
-        let mut start: Vector<Taylor> = at.map(Taylor::from_f64);
+        varied: impl Fn(usize, f64) -> N,
+    ) -> Option<Vec<N>> {
+        let mut start = at.map(N::from_f64);
         for (place, index) in self.components().into_iter().enumerate() {
-            start[index] = Taylor::linear(at[index], u[place], v[place]).plus_quadratic(bend(place));
+            start[index] = varied(place, at[index]);
         }
         let image = self.image_by(body, &start)?;
         Some(self.components().into_iter().map(|index| image[index]).collect())

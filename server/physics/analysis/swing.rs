@@ -18,8 +18,8 @@
 use crate::analysis::jacobian::modulus;
 use crate::analysis::repeating::{Neutral, RepeatingBounce};
 use crate::analysis::return_map::{ARC, Vector};
+use crate::numbers::dual::{SecondOrder, ThirdOrder};
 use crate::numbers::number::Arithmetic;
-use crate::numbers::taylor::Taylor;
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// Distance of λ, λ² and, where e₃ is not 0, λ³ from 1 up to which the coefficients are not defined.
@@ -157,9 +157,14 @@ impl Pair {
     fn cubic(&self, bounce: &RepeatingBounce, mixed: &DVector<f64>) -> Option<(Complex<f64>, Complex<f64>)> {
         // s = s* + 2 Re(wq) + h₁₁|w|² + Re(h₂₀w²) with w = X + iY.
         let [u, v] = split(&self.right);
-        let image = expanded(bounce, [&(2.0 * u), &(-2.0 * v)], |place| {
+        let RepeatingBounce { map, at, .. } = bounce;
+        let image = map.expanded(&map.body.map(ThirdOrder::from_f64), at, |place, value| {
             let Complex { re, im } = self.square[place];
-            [mixed[place] + re, -2.0 * im, mixed[place] - re]
+            ThirdOrder::linear(value, [2.0 * u[place], -2.0 * v[place]]).plus_quadratic([
+                mixed[place] + re,
+                -2.0 * im,
+                mixed[place] - re,
+            ])
         })?;
         let project = |term: usize| -> Complex<f64> {
             image.iter().zip(self.left.iter()).map(|(image, p)| p * image.third()[term]).sum()
@@ -234,18 +239,11 @@ pub(crate) fn paired(left: &Direction, [u, v]: &[DVector<f64>; 2]) -> Complex<f6
     left.iter().enumerate().map(|(n, p)| p * Complex::new(u[n], v[n])).sum()
 }
 
-/// The image of s* + uX + vY + h₀X² + h₁XY + h₂Y², with the `bend` h of each component.
-fn expanded(
-    RepeatingBounce { map, at, .. }: &RepeatingBounce,
-    along: [&DVector<f64>; 2],
-    bend: impl Fn(usize) -> [f64; 3],
-) -> Option<Vec<Taylor>> {
-    map.expanded(&map.body.map(Taylor::from_f64), at, along, bend)
-}
-
 /// Second derivatives along two directions: the coefficients of X², XY and Y² of the image of s* + uX + vY.
-fn quadratic(bounce: &RepeatingBounce, along: [&DVector<f64>; 2]) -> Option<[DVector<f64>; 3]> {
-    let image = expanded(bounce, along, |_| [0.0; 3])?;
+fn quadratic(bounce: &RepeatingBounce, [u, v]: [&DVector<f64>; 2]) -> Option<[DVector<f64>; 3]> {
+    let RepeatingBounce { map, at, .. } = bounce;
+    let varied = |place: usize, value| SecondOrder::linear(value, [u[place], v[place]]);
+    let image = map.expanded(&map.body.map(SecondOrder::from_f64), at, varied)?;
     let terms = |term: usize| image.iter().map(move |component| component.second()[term]);
     Some(std::array::from_fn(|term| DVector::from_iterator(image.len(), terms(term))))
 }

@@ -14,6 +14,52 @@ pub struct Dual<const K: usize, N = f64> {
 /// A value with its first and second derivatives in `K` directions.
 pub type SecondOrder<const K: usize> = Dual<K, Dual<K>>;
 
+/// A value with its derivatives up to the third in `K` directions.
+pub type ThirdOrder<const K: usize> = Dual<K, SecondOrder<K>>;
+
+impl SecondOrder<2> {
+    /// `value` + `x`·X + `y`·Y.
+    pub fn linear(value: f64, [x, y]: [f64; 2]) -> Self {
+        Self { value: Dual { value, partials: [x, y] }, partials: [x, y].map(Dual::from_f64) }
+    }
+
+    /// Coefficients of X², XY and Y².
+    pub fn second(&self) -> [f64; 3] {
+        let [[xx, xy], [_, yy]] = self.partials.map(|first| first.partials);
+        [0.5 * xx, xy, 0.5 * yy]
+    }
+}
+
+impl ThirdOrder<2> {
+    /// `value` + `x`·X + `y`·Y.
+    pub fn linear(value: f64, [x, y]: [f64; 2]) -> Self {
+        Self { value: SecondOrder::linear(value, [x, y]), partials: [x, y].map(SecondOrder::from_f64) }
+    }
+
+    /// The same with `xx` X² + `xy` XY + `yy` Y² added.
+    #[must_use]
+    pub fn plus_quadratic(mut self, [xx, xy, yy]: [f64; 3]) -> Self {
+        for (one, other, more) in [(0, 0, 2.0 * xx), (0, 1, xy), (1, 0, xy), (1, 1, 2.0 * yy)] {
+            self.value.partials[one].partials[other] += more;
+            self.partials[one].value.partials[other] += more;
+            self.partials[one].partials[other].value += more;
+        }
+        self
+    }
+
+    /// Coefficients of X and Y.
+    pub fn first(&self) -> [f64; 2] {
+        self.value.value.partials
+    }
+
+    /// Coefficients of X³, X²Y, XY² and Y³.
+    pub fn third(&self) -> [f64; 4] {
+        let [[[xxx, xxy], [_, xyy]], [_, [_, yyy]]] =
+            self.partials.map(|first| first.partials.map(|second| second.partials));
+        [xxx / 6.0, 0.5 * xxy, 0.5 * xyy, yyy / 6.0]
+    }
+}
+
 impl<const K: usize, N: Number> Dual<K, N> {
     /// A value that moves by `rate` along `direction`, and along no other. Panics if `direction >= K`.
     pub fn along(value: N, direction: usize, rate: f64) -> Self {

@@ -11,5 +11,4 @@ pub(crate) mod lanes;
 pub(crate) mod logarithm;
 pub mod number;
 pub mod rounded;
-pub mod taylor;
 pub mod trig;

@@ -2,9 +2,8 @@
 
 use equipoise_physics::map::flight::Decay;
 use equipoise_physics::numbers::double_double::DoubleDouble;
-use equipoise_physics::numbers::dual::Dual;
+use equipoise_physics::numbers::dual::{Dual, ThirdOrder};
 use equipoise_physics::numbers::number::Arithmetic;
-use equipoise_physics::numbers::taylor::Taylor;
 
 /// e^z for z ≥ 0: its power series, in which nothing cancels.
 fn growth(z: DoubleDouble) -> DoubleDouble {
@@ -60,7 +59,7 @@ fn its_derivatives_are_those_of_the_decay() {
             // A way that is nearly over changes by the rest of two terms.
             assert!((way.partials[0] - decay.left).abs() <= share, "{rate} {t}");
             assert!(near(fall.partials[0], decay.way), "{rate} {t}");
-            let third = Decay::new(Taylor::from_f64(rate), Taylor::linear(t, 1.0, 0.0)).fall.third()[0];
+            let third = Decay::new(ThirdOrder::from_f64(rate), ThirdOrder::linear(t, [1.0, 0.0])).fall.third()[0];
             assert!((third + rate * decay.left / 6.0).abs() <= 1e-12 * rate.max(1e-280), "{rate} {t} {third}");
         }
     }

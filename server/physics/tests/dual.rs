@@ -1,6 +1,6 @@
 //! Derivatives by dual numbers.
 
-use equipoise_physics::numbers::dual::{Dual, SecondOrder};
+use equipoise_physics::numbers::dual::{Dual, SecondOrder, ThirdOrder};
 use equipoise_physics::numbers::number::Arithmetic;
 use equipoise_physics::numbers::trig;
 
@@ -45,4 +45,64 @@ fn second_derivatives_are_those_of_formulas() {
     let one = SecondOrder::from_f64(1.0);
     assert!((second(x.sqrt())[0][0] + 0.25 / (0.7 * 0.7_f64.sqrt())).abs() < 1e-15);
     assert!((second(one / y)[1][1] - 2.0 / (0.4 * 0.4 * 0.4)).abs() < 1e-13);
+}
+
+/// Coefficients of 1, X, Y, X², XY, Y², X³, X²Y, XY² and Y³.
+fn coefficients(number: ThirdOrder<2>) -> Vec<f64> {
+    let value = [number.value.value.value];
+    [&value[..], &number.first(), &number.value.second(), &number.third()].concat()
+}
+
+fn close(one: ThirdOrder<2>, other: ThirdOrder<2>) {
+    for (one, other) in coefficients(one).into_iter().zip(coefficients(other)) {
+        assert!((one - other).abs() <= 1e-14 * (1.0 + other.abs()), "{one} is not {other}");
+    }
+}
+
+fn sample() -> ThirdOrder<2> {
+    let [x, y] = [[1.0, 0.0], [0.0, 1.0]].map(|rates| ThirdOrder::linear(0.0, rates));
+    let number = ThirdOrder::from_f64;
+    ThirdOrder::linear(0.7, [0.3, -0.2]).plus_quadratic([0.5, 0.1, -0.4])
+        + number(0.25) * x * x * x
+        + number(-0.15) * x * x * y
+        + number(0.35) * x * y * y
+        + number(0.05) * y * y * y
+}
+
+#[test]
+fn powers_of_a_sum_have_binomial_coefficients() {
+    let sum = ThirdOrder::linear(0.0, [1.0, 1.0]);
+    assert_eq!((sum * sum).value.second(), [1.0, 2.0, 1.0]);
+    assert_eq!((sum * sum * sum).third(), [1.0, 3.0, 3.0, 1.0]);
+    assert_eq!(coefficients(sum * sum * sum * sum), [0.0; 10]);
+    let given = [0.7, 0.3, -0.2, 0.5, 0.1, -0.4, 0.25, -0.15, 0.35, 0.05];
+    assert!(coefficients(sample()).into_iter().zip(given).all(|(one, other)| (one - other).abs() < 1e-16));
+}
+
+#[test]
+fn functions_undo_each_other() {
+    let z = sample();
+    let one = ThirdOrder::from_f64(1.0);
+    close(z / z, one);
+    close(z.sqrt() * z.sqrt(), z);
+    let (sin, cos) = z.sincos();
+    close(sin * sin + cos * cos, one);
+    let (same, versine) = z.sin_versine();
+    close(same, sin);
+    close(one - versine, cos);
+}
+
+#[test]
+fn an_arctangent_undoes_sine_and_cosine() {
+    let (z, size) = (sample(), ThirdOrder::linear(0.6, [-0.2, 0.3]));
+    let (sin, cos) = z.sincos();
+    close(ThirdOrder::angle_of(size * sin, size * cos), z);
+}
+
+#[test]
+fn the_sine_of_a_sum_is_that_of_trigonometry() {
+    let (a, b) = (ThirdOrder::linear(0.4, [1.0, 0.0]), ThirdOrder::linear(0.3, [0.0, 1.0]));
+    let ((sin_a, cos_a), (sin_b, cos_b)) = (a.sincos(), b.sincos());
+    close((a + b).sincos().0, sin_a * cos_b + cos_a * sin_b);
+    assert!(((a + b).sincos().0.third()[1] + 0.5 * trig::sin_cos(0.7).1).abs() < 1e-15);
 }

@@ -7,7 +7,7 @@ mod budget;
 mod catch_plans;
 mod catching;
 mod contact;
-mod contact_in_air;
+mod contact_time;
 mod control;
 mod decay;
 mod double_double;
