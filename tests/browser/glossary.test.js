@@ -16,9 +16,11 @@ async function open(options) {
   await opened.page.locator('#branch-body .term').first().waitFor();
   return opened;
 }
+/** The note that is open. */
+const NOTE = '.glossary:popover-open';
 const term = (page) => page.locator('#branch-body [data-term=soft]');
 const inside = (page) =>
-  page.locator('#glossary').evaluate((note) => {
+  page.locator(NOTE).evaluate((note) => {
     const { left, top, right, bottom } = note.getBoundingClientRect();
     return left >= 0 && top >= 0 && right <= innerWidth && bottom <= innerHeight;
   });
@@ -27,30 +29,30 @@ test('keys open an explanation and close it, and the focus stays with the word',
   const { page, clean } = await open();
   await term(page).focus();
   await page.keyboard.press('Enter');
-  await page.locator('#glossary', { hasText: 'small swing' }).waitFor();
+  await page.locator(NOTE, { hasText: 'small swing' }).waitFor();
   assert.equal(await term(page).getAttribute('aria-expanded'), 'true');
-  assert.equal(await page.evaluate(() => document.activeElement.id), 'glossary', 'which is read aloud then');
+  assert.equal(await page.evaluate(() => document.activeElement.id), 'glossary-soft', 'which is read aloud then');
   await page.keyboard.press('Escape');
-  await page.locator('#glossary').waitFor({ state: 'hidden' });
+  await page.locator(NOTE).waitFor({ state: 'hidden' });
   assert.equal(await page.evaluate(() => document.activeElement.dataset.term), 'soft');
-  assert.equal(await term(page).getAttribute('aria-expanded'), 'false');
+  await page.locator('#branch-body [data-term=soft][aria-expanded=false]').waitFor();
   clean();
 });
 
 test('a click opens one explanation at a time, and another click closes it', async () => {
   const { page, clean } = await open();
   await term(page).click();
-  await page.locator('#glossary', { hasText: 'Soft boundary' }).waitFor();
+  await page.locator(NOTE, { hasText: 'Soft boundary' }).waitFor();
   await page.locator('#branch-body [data-term=orbit]').first().click();
-  await page.locator('#glossary', { hasText: 'Periodic orbit' }).waitFor();
-  assert.equal(await page.locator('.glossary').count(), 1);
-  assert.equal(await term(page).getAttribute('aria-expanded'), 'false');
+  await page.locator(NOTE, { hasText: 'Periodic orbit' }).waitFor();
+  assert.equal(await page.locator(NOTE).count(), 1);
+  await page.locator('#branch-body [data-term=soft][aria-expanded=false]').waitFor();
   await page.locator('#branch-body [data-term=orbit]').first().click();
-  await page.locator('#glossary').waitFor({ state: 'hidden' });
+  await page.locator(NOTE).waitFor({ state: 'hidden' });
   await term(page).click();
-  await page.locator('#glossary').waitFor();
+  await page.locator(NOTE).waitFor();
   await page.mouse.click(5, 400);
-  await page.locator('#glossary').waitFor({ state: 'hidden' });
+  await page.locator(NOTE).waitFor({ state: 'hidden' });
   clean();
 });
 
@@ -60,10 +62,10 @@ test('an open explanation is inside the window and accessible, on a phone as wel
     await page.setViewportSize({ width, height: 800 });
     for (const name of ['soft', 'kappa-critical', 'orbit']) {
       await page.locator(`#branch-body [data-term=${name}]`).first().click();
-      await page.locator('#glossary').waitFor();
+      await page.locator(NOTE).waitFor();
       assert.ok(await inside(page), name);
     }
-    assert.deepEqual(await violations(page, { include: ['#studies', '#glossary'] }), []);
+    assert.deepEqual(await violations(page, { include: ['#studies', NOTE] }), []);
     await page.keyboard.press('Escape');
   }
   clean();
@@ -75,10 +77,10 @@ test('it works in a panel at its largest too', async () => {
   const dialog = page.locator('dialog.large');
   await dialog.waitFor();
   await dialog.locator('[data-term=soft]').click();
-  await dialog.locator('#glossary', { hasText: 'small swing' }).waitFor();
-  assert.match(plain(await dialog.locator('#glossary').innerText()), /^Soft boundary/);
+  await dialog.locator(NOTE, { hasText: 'small swing' }).waitFor();
+  assert.match(plain(await dialog.locator(NOTE).innerText()), /^Soft boundary/);
   await page.keyboard.press('Escape');
-  await page.locator('#glossary').waitFor({ state: 'hidden' });
+  await page.locator(NOTE).waitFor({ state: 'hidden' });
   assert.equal(await dialog.count(), 1, 'the panel stays large');
   await page.keyboard.press('Escape');
   await dialog.waitFor({ state: 'detached' });

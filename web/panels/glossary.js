@@ -10,6 +10,7 @@ import { sign } from './parts.js';
 /** A word with its explanation one click or key away. @param {{name: keyof typeof TERMS, words?: string}} props what the button says; else the term itself */
 export function Term({ name, words }) {
   const { title, sign: letters, text } = /** @type {Entry} */ (TERMS[name]);
+  const id = `glossary-${name}`;
   const [open, turn] = useState(false);
   const [button, note] = [useRef(/** @type {any} */ (null)), useRef(/** @type {any} */ (null))];
   useLayoutEffect(() => {
@@ -26,10 +27,10 @@ export function Term({ name, words }) {
   };
   // With a target it is no press elsewhere, which would close the note before the click.
   return html`<button type="button" class="term" aria-expanded=${String(open)} aria-haspopup="dialog" data-term=${name}
-      popovertarget=${open ? 'glossary' : null} onClick=${click} ref=${button}>${words ?? (letters ? sign(letters) : title)}</button>
+      popovertarget=${open ? id : null} onClick=${click} ref=${button}>${words ?? (letters ? sign(letters) : title)}</button>
     ${
       open &&
-      html`<div id="glossary" class="glossary" popover="auto" role="dialog" tabindex="-1" aria-label=${title} ref=${note}
+      html`<div id=${id} class="glossary" popover="auto" role="dialog" tabindex="-1" aria-label=${title} ref=${note}
         onToggle=${(/** @type {ToggleEvent} */ { newState }) => newState === 'closed' && turn(false)}>
         <p><strong>${title}</strong>${letters && [' ', sign(letters)]}</p><p>${text}</p>
       </div>`
