@@ -124,7 +124,7 @@ impl Margin {
             of: SMALL,
             value: energy_gain,
             // Without the feedback nothing moves the height.
-            below: MarginEnd::below(0.0, energy_gain).filter(|_| scene.steers_energy()),
+            below: MarginEnd::below(linear.lower_energy_gain / moves, energy_gain).filter(|_| scene.steers_energy()),
             above: Some(upper),
         });
         let has_feedback = scene.model().feedback().is_some();

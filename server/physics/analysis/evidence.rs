@@ -26,6 +26,9 @@ const LEAST_SWING: f64 = 1e-7;
 /// Share of its speed by which a swing may change a bounce, to first order: half of that with which it would end. Beyond, the run decides.
 const LARGEST_CHANGE: f64 = 0.5;
 
+/// Share of the swing of a release above which one has widened, whatever its normal form says.
+const WIDENED: f64 = 4.0;
+
 /// Bounces of that run. Chaotic swings that stay bounded for a while have left by then.
 pub const SMALL_RUN: u64 = 20_000;
 
@@ -53,10 +56,21 @@ pub struct SmallRun {
     pub impacts: u64,
     /// True if it went on for all bounces asked for.
     pub survived: bool,
+    /// Largest |θ| over the first and over the second half of the bounces asked for, rad.
+    pub halves: [f64; 2],
+}
+
+impl SmallRun {
     /// Largest |θ|, rad.
-    pub max_theta: f64,
-    /// The same over its second half, rad.
-    pub late_theta: f64,
+    pub fn max_theta(&self) -> f64 {
+        self.halves[0].max(self.halves[1])
+    }
+
+    /// Tells whether the swing grew over the second half as small ones do that grow by a factor a bounce, so that nothing bounds it yet.
+    pub fn grew(&self, factor: f64) -> bool {
+        let [early, late] = self.halves;
+        late > early * libm::pow(factor, 0.25 * self.impacts as f64)
+    }
 }
 
 /// A bounce that repeats, with the motion of small deviations from it.
@@ -136,6 +150,9 @@ pub struct Judgement {
 
 /// Contacts of the run by which [`stability`] checks a scene.
 const CHECKED: u64 = 2000;
+
+/// Share of a small deviation that is left after [`CHECKED`] bounces, above which it dies out slowly.
+const SLOW: f64 = 0.1;
 
 /// The verdict on a scene, with a run of 2000 contacts as a check.
 pub fn stability(scene: &Scene) -> Judgement {
@@ -223,15 +240,21 @@ pub fn evidence(scene: &Scene, most: u64, go_on: &mut impl FnMut() -> bool) -> O
         Err(why) => return Some(Evidence::NothingRepeats(why)),
     };
     let mut balance = Balance::new(&judged, &orbit, small);
+    // A drift that no first order tells may take the body off its table.
+    let may_leave = balance.small.drifts && scene.rules().half_length.is_finite();
     let decides = match (balance.small.motion, &balance.swing) {
+        (Motion::Circles(_) | Motion::DiesOut, _) if may_leave && most > CHECKED => true,
         (Motion::Silent(_) | Motion::Grows(_), _) | (Motion::Circles(_), Some(Err(_))) => true,
         (Motion::Circles(_), _) if !balance.form_tells() => true,
         (Motion::Circles(_), Some(Ok(swing))) => {
             swing.farther.is_some() || matches!(swing.course(), Course::DiesOut | Course::Settles)
         }
         (Motion::Circles(_), None) => false,
-        // A drift takes the body away from the place.
-        (Motion::DiesOut, _) => balance.small.drifts && ReturnMap::of_cycle(&judged.model()).has_place,
+        // A drift takes the body away from the place; and where a small swing dies out slowly, one of the size of the release may grow.
+        (Motion::DiesOut, _) => {
+            (most > CHECKED && libm::pow(balance.small.slowest(), CHECKED as f64) > SLOW)
+                || balance.small.drifts && ReturnMap::of_cycle(&judged.model()).has_place
+        }
     };
     if decides {
         balance.small_run = Some(small_run(scene, &balance.small, most, go_on)?);
@@ -282,6 +305,16 @@ impl Balance {
         self.resonance.is_none() && !matches!(&self.swing, Some(Ok(swing)) if swing.is_wide())
     }
 
+    /// Tells whether the run that decides ended while its swing still grew.
+    pub fn grows_on(&self) -> bool {
+        matches!((self.small.motion, self.small_run), (Motion::Grows(factor), Some(run)) if run.grew(factor))
+    }
+
+    /// Tells whether the run that decides ended with a swing that is far wider than that of its release.
+    fn widened(&self, swing: &Swing) -> bool {
+        self.small_run.is_some_and(|run| run.is_own && run.halves[1] > WIDENED * swing.amplitude)
+    }
+
     fn left(&self) -> bool {
         self.small_run.is_some_and(|run| !run.survived)
     }
@@ -295,6 +328,7 @@ impl Balance {
             (Motion::DiesOut, _) if self.small.drifts => (Verdict::StableDrifting, DecidedBy::Linear),
             (Motion::DiesOut, _) => (Verdict::StableInPlace, DecidedBy::Linear),
             (Motion::Circles(_), _) if left && !self.form_tells() => (Verdict::Unstable, DecidedBy::Nonlinear),
+            (Motion::Circles(_), None) if left => (Verdict::Unstable, DecidedBy::Nonlinear),
             (Motion::Circles(_), None) => (Verdict::Elliptic, DecidedBy::Linear),
             // Without a normal form the run from a small start decides.
             (Motion::Circles(_), Some(Err(_))) => {
@@ -306,14 +340,19 @@ impl Balance {
                 (Verdict::WeaklyUnstable, DecidedBy::Nonlinear)
             }
             (Motion::Circles(_), Some(Ok(Swing { farther: Some(_), .. })))
-                if self.small_run.is_some_and(|run| run.late_theta < 0.5 * run.max_theta) =>
+                if self.small_run.is_some_and(|run| run.halves[1] < 0.5 * run.max_theta()) =>
             {
                 (Verdict::WeaklyAttracting, DecidedBy::Nonlinear)
             }
             (Motion::Circles(_), Some(Ok(swing))) => match swing.course() {
+                Course::Circles if left => (Verdict::Unstable, DecidedBy::Nonlinear),
                 Course::Circles => (Verdict::Elliptic, DecidedBy::Linear),
                 Course::Grows | Course::Pumps | Course::Shifts => (Verdict::WeaklyUnstable, DecidedBy::Lyapunov),
                 Course::DiesOut | Course::Settles if left => (Verdict::Unstable, DecidedBy::Nonlinear),
+                // Near a strong resonance it may do what its normal form does not tell.
+                Course::DiesOut | Course::Settles if self.widened(swing) => {
+                    (Verdict::WeaklyUnstable, DecidedBy::Nonlinear)
+                }
                 Course::DiesOut | Course::Settles => (Verdict::WeaklyAttracting, DecidedBy::Lyapunov),
             },
         }
@@ -322,6 +361,7 @@ impl Balance {
     /// The rules at and beyond an end of the stable range: the coefficient at κ_c, the run from a small start, and soft losses.
     fn beyond(&self) -> (Verdict, DecidedBy) {
         let stays = self.small_run.is_some_and(|run| run.survived);
+        let grows = self.grows_on();
         let at_end = matches!(self.small.motion, Motion::Silent(value) if value < 0.0);
         let is_soft = self.losses.iter().any(|loss| loss.is_soft() && loss.settles.is_some());
         match self.boundary.filter(|_| at_end) {
@@ -330,6 +370,7 @@ impl Balance {
             Some(_) => (Verdict::Unstable, DecidedBy::Nonlinear),
             None if !stays => (Verdict::Unstable, DecidedBy::Linear),
             None if is_soft => (Verdict::BoundedBeyondBoundary, DecidedBy::Boundary),
+            None if grows => (Verdict::Unstable, DecidedBy::Linear),
             None => (Verdict::BoundedBeyondBoundary, DecidedBy::Nonlinear),
         }
     }
@@ -406,12 +447,10 @@ fn small_run(scene: &Scene, small: &SmallDeviations, most: u64, go_on: &mut impl
         *half = half.max(contact.state.theta.abs());
         !contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
     })?;
-    let [early_theta, late_theta] = halves;
     Some(SmallRun {
         impacts: orbit.contacts(),
         is_own: released.is_some(),
         survived: ending == Ending::Completed,
-        max_theta: early_theta.max(late_theta),
-        late_theta,
+        halves,
     })
 }

@@ -46,7 +46,9 @@ pub struct LinearVerdict {
     pub lower_tilt_gain: f64,
     /// κ_c, greatest κ that balances: 1 + Gρ²/(V²l), eq. (18), for every e and κ_E, with ρ² as in the residue; −∞ where none does.
     pub critical_tilt_gain: f64,
-    /// Greatest κ_E that holds the energy, 2/((1 + e)V²), s²/m²; infinite where the law of the energy has no gain.
+    /// Least κ_E that holds the energy, s²/m²; above 0 where the table gives back too little, or so much that a small gain lets the body bounce too high.
+    pub lower_energy_gain: f64,
+    /// Greatest κ_E that holds the energy, 2/((1 + e)V²), s²/m²; infinite where the law of the energy has no gain, and where it has to be searched.
     pub upper_energy_gain: f64,
     /// 1 − (1 + e)κ_E V², for either measure: both are ½V² + Gl + V δẏ to first order. (e − ê)/(1 + ê) where one strike brings the
     /// energy to its target.
@@ -126,21 +128,28 @@ pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> LinearVerdict 
         eigenvalues,
         lower_tilt_gain,
         critical_tilt_gain,
+        lower_energy_gain: 0.0,
         upper_energy_gain: upper_energy_gain(scene, fixed_point),
         energy_eigenvalue,
     }
 }
 
-/// 2/((1 + e)V²), s²/m²: the greatest energy gain, at a bounce whose height moves apart from all else. Infinite where the flight, a delay, a program
-/// or a lean takes part in it, and where the law of the energy has no gain.
+/// 2/((1 + e)V²), s²/m²: the greatest energy gain, at a bounce whose height moves apart from all else and is the target. Infinite where the flight, a
+/// delay, a program or a lean takes part in it, where the bounce has another energy, which moves with the gain, and where the law has no gain.
 pub(super) fn upper_energy_gain(scene: &Scene, fixed_point: &FixedPoint) -> f64 {
     let body = scene.model();
     let falls_freely = body.drag.is_none_or(|drag| drag.linear == 0.0);
     let is_alone =
         falls_freely && !scene.moves_late() && body.program.is_none() && fixed_point.theta.abs() <= PARABOLIC;
-    let has_gain = body.rod.energy_feedback != EnergyFeedback::OneStrike;
-    if is_alone && has_gain {
-        2.0 / ((1.0 + body.rod.restitution) * (fixed_point.speed * fixed_point.speed))
+    let Rod { contact_distance, gravity, restitution, energy_feedback, .. } = body.rod;
+    let (square, drift) = (fixed_point.speed * fixed_point.speed, fixed_point.x_dot);
+    let of_drift = if energy_feedback == EnergyFeedback::Total { drift * drift } else { 0.0 };
+    let is_target = scene.target_height(1).is_none_or(|height| {
+        let aimed = 2.0 * gravity * (height - contact_distance);
+        (square + of_drift - aimed).abs() <= PARABOLIC * aimed
+    });
+    if is_alone && is_target && energy_feedback != EnergyFeedback::OneStrike {
+        2.0 / ((1.0 + restitution) * square)
     } else {
         f64::INFINITY
     }

@@ -15,6 +15,8 @@ use crate::analysis::periodic_orbits::multipliers::Bifurcation;
 use crate::analysis::repeating::{self, RepeatingBounce, find_planned};
 use crate::analysis::return_map::{ReturnMap, Vector, Y_DOT};
 use crate::analysis::small_deviations::{Motion, SmallDeviations};
+use crate::map::body::Body;
+use crate::map::strike::EnergyFeedback;
 use crate::scene::Scene;
 use nalgebra::Complex;
 
@@ -27,10 +29,17 @@ pub const MOST_VALUES: u64 = 300;
 /// Number of gains of a scene whose ends may have to be searched.
 pub fn searched_gains(scene: &Scene) -> u64 {
     let model = scene.model();
-    if is_plain(&scene.with_tilt_law()) || scene.has_noise() {
+    if scene.has_noise() {
         return 0;
     }
-    u64::from(!model.is_point) + u64::from(model.rod.strike_gain_per_energy != 0.0)
+    let is_plain = is_plain(&scene.with_tilt_law());
+    let believes = scene.assumed_restitution() == model.rod.restitution;
+    u64::from(!model.is_point && !is_plain) + u64::from(has_energy_gain(&model) && !(is_plain && believes))
+}
+
+/// Tells whether the law of the energy has a gain.
+fn has_energy_gain(body: &Body) -> bool {
+    body.rod.strike_gain_per_energy != 0.0 && body.rod.energy_feedback != EnergyFeedback::OneStrike
 }
 
 /// The motion on which a scene beyond a soft end settles, by the normal form.
@@ -52,7 +61,7 @@ pub enum SettledMotion {
 pub struct StabilityLoss {
     /// The parameter whose range ends: the tilt gain, the energy gain, or the factor on the feedback.
     pub end: Parameter,
-    /// Critical value: κ, κ_E (s²/m²) or the factor on the gains.
+    /// Critical value, as it is told to the table: κ, κ_E (s²/m²) or the factor on the gains.
     pub value: f64,
     /// Bifurcation by which eigenvalues leave the unit circle there.
     pub bifurcation: Bifurcation,
@@ -91,12 +100,12 @@ pub fn losses(scene: &Scene, small: &SmallDeviations, boundary: Option<f64>) -> 
     let mut ends: Vec<(Parameter, f64, Option<f64>)> = Vec::new();
     let critical = linear.critical_tilt_gain;
     if critical.is_finite() && (boundary.is_some() || (critical > 1.0 && !scene.model().is_point)) {
-        ends.push((Parameter::TILT_GAIN, critical, boundary));
+        ends.push((Parameter::TILT_GAIN, critical / scene.tilt_factor(), boundary));
     }
     if linear.energy_eigenvalue < 1.0 && linear.upper_energy_gain.is_finite() {
         // The speeds of upright bounces follow u ↦ u(1 + ½K(V² − u²)), K = (1 + e)κ_E, which doubles its period at KV² = 2 with 4K = 8/V².
         let coefficient = boundary.map(|_| 8.0 / (fixed_point.speed * fixed_point.speed));
-        ends.push((Parameter::ENERGY_GAIN, linear.upper_energy_gain, coefficient));
+        ends.push((Parameter::ENERGY_GAIN, linear.upper_energy_gain / scene.speed_factor(), coefficient));
     }
     if scene.model().feedback().is_some()
         && let Some(StableGains { lower, upper }) = small.found.as_ref().and_then(RepeatingBounce::stable_gains)
@@ -123,7 +132,7 @@ pub fn search_ends(scene: &Scene, small: &mut SmallDeviations, go_on: &mut dyn F
     let model = scene.model();
     let is_known = model.is_point || small.found.as_ref().is_none_or(|bounce| bounce.stable_gains().is_some());
     let gain = (!is_known).then(|| model.feedback().map_or(Parameter::TILT_GAIN, |_| Parameter::FeedbackFactor));
-    let steers = model.rod.strike_gain_per_energy != 0.0 && small.linear.upper_energy_gain.is_infinite();
+    let steers = has_energy_gain(&model) && small.linear.upper_energy_gain.is_infinite();
     let at = small.found.as_ref().map(|bounce| bounce.at);
     let at = at.unwrap_or_else(|| ReturnMap::new(&model, 1).vector(&small.state(), small.fixed_point.x));
     let mut losses = Vec::new();
@@ -149,8 +158,16 @@ pub fn search_ends(scene: &Scene, small: &mut SmallDeviations, go_on: &mut dyn F
         match end {
             Parameter::FeedbackFactor => small.feedback_range = Some(StableGains { lower: below, upper: above }),
             Parameter::Field(_) if !bounded => {}
-            Parameter::ENERGY_GAIN => small.linear.upper_energy_gain = above,
-            Parameter::Field(_) => (small.linear.lower_tilt_gain, small.linear.critical_tilt_gain) = (below, above),
+            // Those by which the table acts.
+            Parameter::ENERGY_GAIN => {
+                let acts = scene.speed_factor();
+                (small.linear.lower_energy_gain, small.linear.upper_energy_gain) =
+                    (below.max(0.0) * acts, above * acts);
+            }
+            Parameter::Field(_) => {
+                let acts = scene.tilt_factor();
+                (small.linear.lower_tilt_gain, small.linear.critical_tilt_gain) = (below * acts, above * acts);
+            }
         }
         // Gains that do not feed back a state have one end, below which nothing settles.
         let near = match (end, bounded) {
@@ -219,7 +236,7 @@ fn loss_at(
     if pumped != 0.0 {
         return Err(note(end, "a motion there moves a kept quantity"));
     }
-    let coefficient = if end == Parameter::TILT_GAIN { branch / (value - 1.0) } else { -growth };
+    let coefficient = if end == Parameter::TILT_GAIN { branch / (value * scene.tilt_factor() - 1.0) } else { -growth };
     if !coefficient.is_finite() {
         return Err(note(end, "its normal form has no coefficient"));
     }

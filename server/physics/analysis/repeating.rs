@@ -30,6 +30,12 @@ const NEUTRAL: [f64; 5] = [0.05, 1e-3, 1e-5, 1e-8, EXACT];
 /// The same at a fixed point, where that of a family is 0 but for rounding.
 const EXACT: f64 = 1e-11;
 
+/// Way of the angle from the guess, in parts of the bounce speed, beyond which another bounce that repeats may be nearer.
+const FAR: f64 = 0.02;
+
+/// Share of a change of its height that a bounce keeps, up to which the table holds that height.
+const HOLDS: f64 = 0.99;
+
 /// Way along a family, in parts of the bounce speed, by which it is tried whether fixed points go on.
 const TRIED: f64 = 1e-3;
 
@@ -116,7 +122,7 @@ impl NoRepeatingBounce {
 
 impl RepeatingBounce {
     /// A bounce with its derivative, of which neither neutral directions nor eigenvalues are known.
-    pub(super) fn bare(map: &ReturnMap, at: Vector, matrix: DMatrix<f64>) -> Self {
+    pub(crate) fn bare(map: &ReturnMap, at: Vector, matrix: DMatrix<f64>) -> Self {
         Self { map: *map, at, residual: 0.0, matrix, neutral: Vec::new(), eigenvalues: Vec::new() }
     }
 
@@ -334,19 +340,36 @@ fn scales(map: &ReturnMap, speed: f64) -> DVector<f64> {
 /// strikes keep exactly is that of `reference` to all orders.
 pub fn find(map: &ReturnMap, guess: &Vector, reference: &Vector) -> Result<RepeatingBounce, NoRepeatingBounce> {
     let newton = Newton { map, reference, keeps_energy: keeps_energy(map, guess) };
-    let mut failure = None;
+    let (mut nearest, mut failure) = (None, None);
     for share in NEUTRAL {
         match newton.solve(guess, share) {
             Ok(found) => {
-                let neutral = families(&found)?;
-                return found.beside_neutral(neutral).ok_or(NoRepeatingBounce::NotFound);
+                let way = turned(map, guess, &found.at);
+                if nearest.as_ref().is_none_or(|(least, _)| way < *least) {
+                    nearest = Some((way, found));
+                }
+                // Beside an eigenvalue 1 the iteration may come to a bounce far off, though one is here.
+                if way <= FAR {
+                    break;
+                }
             }
             // What moves is said by the first try, which solves for all else.
             Err(why) => failure = failure.or(Some(why)),
         }
     }
+    if let Some((_, found)) = nearest {
+        let neutral = families(&found)?;
+        return found.beside_neutral(neutral).ok_or(NoRepeatingBounce::NotFound);
+    }
     let why = failure.unwrap_or(NoRepeatingBounce::NotFound);
     Err(if why.moves(X_DOT) { driven_aside(map, guess, reference).unwrap_or(why) } else { why })
+}
+
+/// Way of the angle and of the spin from one state to another, in parts of the bounce speed.
+fn turned(map: &ReturnMap, from: &Vector, to: &Vector) -> f64 {
+    let speed = from[Y_DOT].abs();
+    let arc = (to[ARC] - from[ARC]).abs() * map.body.rod.gravity / (2.0 * speed);
+    arc.max((to[SPIN] - from[SPIN]).abs()) / speed
 }
 
 /// The bounce at which the angle stays, and each one changes the velocity.
@@ -354,7 +377,17 @@ fn driven_aside(map: &ReturnMap, guess: &Vector, reference: &Vector) -> Option<N
     if map.body.is_point || map.has_place || !map.components().contains(&X_DOT) {
         return None;
     }
-    let RepeatingBounce { at, .. } = find(&map.holding_speed(), guess, reference).ok()?;
+    // At the height that the table holds, or else at that of the reference.
+    let holds = |bounce: &RepeatingBounce| {
+        let kept = bounce.map.place_of(Y_DOT).map_or(1.0, |fall| bounce.matrix[(fall, fall)].abs());
+        kept <= HOLDS && (0.5..=2.0).contains(&(bounce.at[Y_DOT] / guess[Y_DOT]))
+    };
+    let held = find(&map.holding(&[X_DOT]), guess, reference).ok().filter(holds);
+    let RepeatingBounce { at, .. } = held.or_else(|| {
+        let mut there = *guess;
+        there[Y_DOT] = upright(map, reference)[Y_DOT];
+        find(&map.holding(&[X_DOT, Y_DOT]), &there, reference).ok()
+    })?;
     let image = map.image(&at)?;
     let mut change = [0.0; COMPONENTS];
     (change[X_DOT], change[Y_DOT]) = (image[X_DOT] - at[X_DOT], image[Y_DOT] - at[Y_DOT]);

@@ -76,8 +76,8 @@ pub struct ReturnMap {
     pub has_place: bool,
     /// True if the motion of the table is one of the components: it is planned before the last strike.
     pub(crate) plans: bool,
-    /// True if ẋ and ẏ are none of the components: they start each time as they are.
-    holds_speed: bool,
+    /// Indices that are none of the components: they start each time as they are.
+    held: &'static [usize],
 }
 
 /// A map with its derivative at a state.
@@ -93,7 +93,7 @@ impl ReturnMap {
     /// The map of a body without random errors over `period` bounces. x is a component only where strikes depend on it.
     pub fn new(body: &Body, period: u64) -> Self {
         let has_place = body.feedback().is_some_and(|[x, ..]| x != 0.0) || body.turning.is_some_and(|it| it.strikes());
-        Self { body: Body { noise: None, outline: None, ..*body }, period, has_place, plans: false, holds_speed: false }
+        Self { body: Body { noise: None, outline: None, ..*body }, period, has_place, plans: false, held: &[] }
     }
 
     /// The map of a body without random errors over one bounce, or over the heights of its program.
@@ -107,10 +107,10 @@ impl ReturnMap {
         Self { plans: true, ..self }
     }
 
-    /// The same map of a body whose velocity starts each time as it is.
+    /// The same map of a body of which some parts start each time as they are.
     #[must_use]
-    pub fn holding_speed(self) -> Self {
-        Self { holds_speed: true, ..self }
+    pub fn holding(self, held: &'static [usize]) -> Self {
+        Self { held, ..self }
     }
 
     /// A state with the motion that the table would plan for it, where the map has that.
@@ -129,14 +129,11 @@ impl ReturnMap {
         let of_body = if self.body.is_point { X_DOT..SPIN } else { ARC..X };
         let place = self.has_place.then_some(X);
         let plan = if self.plans { TILT..COMPONENTS } else { 0..0 };
-        of_body
-            .chain(place)
-            .chain(plan)
-            .filter(|&index| !(self.holds_speed && [X_DOT, Y_DOT].contains(&index)))
-            .collect()
+        of_body.chain(place).chain(plan).filter(|index| !self.held.contains(index)).collect()
     }
 
-    pub(crate) fn place_of(&self, component: usize) -> Option<usize> {
+    /// Place of a component of [`Vector`] among those of the map; `None` if it is none of them.
+    pub fn place_of(&self, component: usize) -> Option<usize> {
         self.components().into_iter().position(|index| index == component)
     }
 

@@ -74,6 +74,12 @@ impl SmallDeviations {
         })
     }
 
+    /// Factor a bounce of the deviation that dies out most slowly: the largest modulus below 1.
+    pub fn slowest(&self) -> f64 {
+        let moduli = self.linear.eigenvalues.iter().copied().map(modulus);
+        moduli.filter(|value| *value < 1.0).fold(0.0, f64::max)
+    }
+
     /// The drift that stays, m/s; 0 where none is known.
     pub fn lasting_drift(&self) -> f64 {
         self.drift.unwrap_or(self.fixed_point.x_dot)
@@ -244,6 +250,7 @@ impl LinearVerdict {
             eigenvalues,
             lower_tilt_gain: f64::INFINITY,
             critical_tilt_gain: f64::NEG_INFINITY,
+            lower_energy_gain: 0.0,
             upper_energy_gain: f64::INFINITY,
             // Exactly 1 where the energy is kept.
             energy_eigenvalue: if (height - 1.0).abs() <= PARABOLIC { 1.0 } else { height },
@@ -267,7 +274,12 @@ impl LinearVerdict {
             (AngleClass::Elliptic | AngleClass::Parabolic, _) => Motion::Silent(-1.0),
             (AngleClass::Hyperbolic, _) => {
                 let largest = self.eigenvalues.iter().copied().map(modulus).fold(0.0, f64::max);
-                if largest > 1.0 + ON_CIRCLE { Motion::Grows(largest) } else { Motion::Silent(1.0) }
+                let turns = self.eigenvalues.iter().any(|value| value.re <= ON_CIRCLE - 1.0);
+                match largest > 1.0 + ON_CIRCLE {
+                    true => Motion::Grows(largest),
+                    // As a point mass at κ = 1.
+                    false => Motion::Silent(if turns { -1.0 } else { 1.0 }),
+                }
             }
         }
     }

@@ -7,14 +7,16 @@ use crate::support::turning::turning;
 use equipoise_physics::analysis::gain_range::StableGains;
 use equipoise_physics::analysis::jacobian::modulus;
 use equipoise_physics::analysis::limits::{Limit, LimitKind, Limits, NoLimits, Parameter, limits_of};
+use equipoise_physics::analysis::losses::search_ends;
 use equipoise_physics::analysis::repeating::{SceneMap, find_planned};
 use equipoise_physics::analysis::return_map::{ARC, X, Y_DOT};
 use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::lqr::design_lqr;
+use equipoise_physics::map::table::program::HeightProgram;
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
-use equipoise_physics::scene::{Draft, Name, Scene};
+use equipoise_physics::scene::{Draft, Name, Scene, Value};
 
 const KAPPA: Parameter = Parameter::Field(Name::TiltGain);
 
@@ -112,6 +114,73 @@ fn the_upper_end_of_the_energy_gain_is_its_closed_form() {
         near(found.upper.as_ref(), linear.upper_energy_gain, -1.0, &scene);
         let lower = found.lower.unwrap();
         assert!(lower.value.abs() < 1e-8 && lower.kind == LimitKind::Eigenvalue(1.0.into()), "{lower:?}");
+    }
+}
+
+/// With a wrong belief the height moves with the gain, and the ends of the gain with it.
+#[test]
+fn the_ends_of_the_energy_gain_of_a_table_that_errs_count_the_height_that_moves() {
+    let mut random = Random::new(2209);
+    let mut checked = 0;
+    for (measure, error) in [("vertical", 0.04), ("total", 0.03), ("vertical", -0.03), ("total", -0.02)] {
+        for other in [&[][..], &[(Name::SpeedError, 0.01)], &[(Name::RotationDrag, 0.05)]] {
+            let scene = rod(&mut random, 0.4, other);
+            let aimed = 2.0 * scene.gravity() * (scene.release().height - scene.number(Name::ContactDistance).unwrap());
+            let restitution = scene.number(Name::Restitution).unwrap() * 0.9;
+            let numbers = [
+                (Name::EnergyGain, 0.3 / aimed),
+                (Name::TargetHeight, scene.release().height),
+                (Name::Restitution, restitution),
+                (Name::AssumedRestitution, restitution + error),
+            ];
+            let scene = with(worded(scene.draft(), &[(Name::EnergyMeasure, measure)]), &numbers);
+            let mut small = small_deviations(&scene).unwrap();
+            search_ends(&scene, &mut small, &mut || true).unwrap();
+            let linear = &small.linear;
+            // V² = A + B/κ_E, and the residue goes with V².
+            let (own, place) = (scene.energy_gain(), small.fixed_point);
+            let square = place.speed * place.speed;
+            let aimed = aimed - if measure == "total" { place.x_dot * place.x_dot } else { 0.0 };
+            let beside = (square - aimed) * own;
+            let Some(residue) = linear.residue else { continue };
+            let of_height = (2.0 / (1.0 + restitution) - beside) / aimed;
+            let of_angle = beside / (square / residue - aimed);
+            let of_angle = if of_angle > 0.0 { of_angle } else { f64::INFINITY };
+            let [lower, upper] =
+                if beside > 0.0 { [of_angle, of_height] } else { [-beside / aimed, of_height.min(of_angle)] };
+            let (found, wanted) = (linear.upper_energy_gain, upper);
+            assert!((found / wanted - 1.0).abs() < 1e-8, "{found} {wanted}: {scene:?}");
+            // A bounce that comes to rest is found less exactly.
+            let (found, wanted) = (linear.lower_energy_gain, lower);
+            assert!((found / wanted - 1.0).abs() < 1e-3, "{found} {wanted}: {scene:?}");
+            checked += 1;
+        }
+    }
+    assert!(checked >= 8, "{checked}");
+}
+
+/// Ends are those of the table, and limits those of the field, which differ by the error of the gain.
+#[test]
+fn an_error_of_the_gain_divides_its_limits_once() {
+    let mut random = Random::new(2210);
+    for error in [-0.2, 0.1] {
+        let rod = rod(&mut random, 0.3, &[]);
+        let told = rod.number(Name::TiltGain).unwrap() / (1.0 + error);
+        let rod = with(rod.draft(), &[(Name::TiltGain, told), (Name::TiltGainError, error)]);
+        let heights = rod.release().height;
+        let mut draft = worded(rod.draft(), &[(Name::EnergyLaw, "one_strike")]);
+        draft.set(Name::Program, HeightProgram::new(&[heights, heights * 1.05]).map(Value::Numbers)).unwrap();
+        for scene in [rod, draft.build().unwrap()] {
+            let mut small = small_deviations(&scene).unwrap();
+            let (losses, _) = search_ends(&scene, &mut small, &mut || true).unwrap();
+            let found = limits(&scene, KAPPA);
+            let upper = found.upper.unwrap().value;
+            let acting = small.linear.critical_tilt_gain;
+            assert!((upper * scene.tilt_factor() / acting - 1.0).abs() < 1e-9, "{upper} {acting} {scene:?}");
+            for loss in losses.iter().filter(|loss| loss.end == KAPPA) {
+                assert!((loss.value / upper - 1.0).abs() < 1e-9, "{loss:?} {upper}");
+            }
+        }
     }
 }
 

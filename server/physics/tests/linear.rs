@@ -5,6 +5,7 @@ use equipoise_physics::analysis::linear_solution::LinearSolution;
 use equipoise_physics::analysis::method::{RunMethod, run_by};
 use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::analysis::verdict::{DecidedBy, Verdict};
+use equipoise_physics::map::table::program::HeightProgram;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
@@ -414,4 +415,83 @@ fn a_swing_as_fast_as_the_bounce_that_the_height_sinks_to_is_judged_by_its_run()
     let judgement = judged(&scene, JUDGED);
     assert!(matches!(course(&scene), Course::Ended(contact) if contact > JUDGED));
     assert_eq!((judgement.verdict, judgement.decided_by), (Verdict::Unstable, DecidedBy::Nonlinear), "{judgement:?}");
+}
+
+/// A scene of these numbers, with friction on a matched table.
+fn matched(numbers: &[(Name, f64)], choices: &[(Name, &'static str)]) -> Draft {
+    let mut draft = Draft::default();
+    for &(name, number) in numbers {
+        draft.set(name, Some(Value::Number(number))).unwrap();
+    }
+    for &(name, choice) in choices.iter().chain(&[(Name::Slide, "matched")]) {
+        draft.set(name, Some(Value::Choice(choice))).unwrap();
+    }
+    draft
+}
+
+/// Found among random scenes: a swing of 0.06 rad grows and falls at contact 5905, and one of 10⁻⁴ rad dies out by 3 · 10⁻⁵ a bounce.
+#[test]
+fn where_small_swings_die_out_slowly_the_run_of_the_release_tells_whether_its_own_does() {
+    let released = |theta| {
+        let numbers = [
+            (Name::ContactDistance, 0.34),
+            (Name::RadiusOfGyration, 0.293),
+            (Name::TiltGain, 1.258),
+            (Name::TargetHeight, 0.555),
+            (Name::Friction, 0.026),
+            (Name::RotationDrag, 1.45e-4),
+            (Name::Height, 0.614),
+            (Name::Theta, theta),
+        ];
+        judged(&matched(&numbers, &[(Name::EnergyLaw, "one_strike")]).build().unwrap(), 2000)
+    };
+    let wide = released(-0.062);
+    assert_eq!((wide.verdict, wide.decided_by), (Verdict::Unstable, DecidedBy::Nonlinear));
+    assert!(wide.says_bounded && wide.bounces > 2000 && wide.bounces < BOUNCES, "{}", wide.bounces);
+    let small = released(-1e-4);
+    assert_eq!((small.verdict, small.decided_by), (Verdict::StableDrifting, DecidedBy::Linear));
+}
+
+/// Found among random scenes: swings grow by 3 · 10⁻⁴ a bounce. One of 10⁻⁴ rad has come to 0.07 rad after 20,000 bounces, and nothing bounds it.
+#[test]
+fn a_swing_that_still_grows_at_the_end_of_its_run_is_not_bounded() {
+    let numbers = [
+        (Name::ContactDistance, 0.3701198216908221),
+        (Name::RadiusOfGyration, 0.34541528556701645),
+        (Name::FeedbackTheta, -1.0537409634503607),
+        (Name::FeedbackThetaDot, 0.00013661016065567012),
+        (Name::Delay, 0.019112882331783564),
+        (Name::Friction, 0.029931746866731453),
+        (Name::Height, 0.5104689267588889),
+    ];
+    for theta in [1e-4, 1e-2] {
+        let draft = matched(&[&numbers[..], &[(Name::Theta, theta)]].concat(), &[(Name::Prediction, "flight")]);
+        let found = judged(&draft.build().unwrap(), 2000);
+        assert_eq!(found.verdict, Verdict::Unstable, "{theta} rad: {:?}", found.decided_by);
+        assert!(!found.says_bounded);
+    }
+}
+
+/// Close to κ_c of a program on a matched table, where an eigenvalue is near 1, the iteration from the upright bounce came to another one at 0.24 rad.
+#[test]
+fn the_bounce_that_repeats_is_the_one_next_to_upright() {
+    for tilt_gain in [1.9355, 1.936, 1.9365, 1.94] {
+        let numbers = [
+            (Name::ContactDistance, 0.1984364316983313),
+            (Name::RadiusOfGyration, 0.06878815457045169),
+            (Name::TiltGain, tilt_gain),
+            (Name::TiltGainError, -0.008902809900907652),
+            (Name::Restitution, 0.8759397034775482),
+            (Name::Friction, 0.7791196348386181),
+            (Name::Height, 0.3165270320996427),
+            (Name::Theta, 1e-6),
+        ];
+        let mut draft = matched(&numbers, &[(Name::EnergyLaw, "one_strike")]);
+        let heights = HeightProgram::new(&[0.316000518549104, 0.32175778738555505]).map(Value::Numbers);
+        draft.set(Name::Program, heights).unwrap();
+        let scene = draft.build().unwrap();
+        let small = small_deviations(&scene).unwrap();
+        assert!(small.fixed_point.theta.abs() < 1e-12, "{tilt_gain}: {:?}", small.fixed_point);
+        assert!(small.motion.is_bounded(), "{tilt_gain}: {:?}", small.motion);
+    }
 }

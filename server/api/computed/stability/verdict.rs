@@ -10,7 +10,6 @@ use equipoise_physics::analysis::evidence::{
     Balance, Course, Evidence, Judgement, NOISY_IMPACTS, NOISY_RUNS, SMALL_SWING, SmallRun, Swing,
 };
 use equipoise_physics::analysis::fixed_point::FixedPoint;
-use equipoise_physics::analysis::jacobian::modulus;
 use equipoise_physics::analysis::linear_verdict::{AngleClass, PARABOLIC};
 use equipoise_physics::analysis::losses::SettledMotion;
 use equipoise_physics::analysis::nonlinear_run::NonlinearRun;
@@ -177,7 +176,7 @@ fn lost_run(scene: &Scene, run: &NonlinearRun) -> String {
 }
 
 /// The reason for which no bounce of a scene repeats.
-fn nothing_repeats(scene: &Scene, why: &NoRepeatingBounce) -> String {
+pub(crate) fn nothing_repeats(scene: &Scene, why: &NoRepeatingBounce) -> String {
     let mut said = Vec::new();
     if scene.running_model().constant_tilt != 0.0 {
         said.push(format!(
@@ -333,7 +332,8 @@ fn balanced(scene: &Scene, balance: &Balance, run: &NonlinearRun) -> String {
     let small = |small: &SmallRun| {
         let end = if small.survived { "stayed" } else { "left" };
         let start = if small.is_own { "this release".to_owned() } else { format!("a swing of {SMALL_SWING} rad") };
-        format!("a run from {start} {end}, {} bounces and |θ| up to {} rad", small.impacts, small.max_theta)
+        let still = if small.survived && balance.grows_on() { ", and it still grew" } else { "" };
+        format!("a run from {start} {end}, {} bounces and |θ| up to {} rad{still}", small.impacts, small.max_theta())
     };
     let by_run = balance.small_run.as_ref().map_or_else(String::new, |run| format!("; {}", small(run)));
     let beside = if balance.small.drifts { "; a drift stays as it is" } else { "" };
@@ -352,7 +352,7 @@ fn balanced(scene: &Scene, balance: &Balance, run: &NonlinearRun) -> String {
     match (balance.small.motion, &balance.swing) {
         (Motion::DiesOut, _) => format!(
             "{range}small deviations die out: the largest modulus of an eigenvalue beside what is kept is {}{beside}{by_run}",
-            beside_neutral(balance)
+            balance.small.slowest()
         ),
         (Motion::Grows(_) | Motion::Silent(_), _) => format!("{}{by_run}", beyond(scene, balance)),
         (Motion::Circles(_), None) => {
@@ -370,12 +370,6 @@ fn balanced(scene: &Scene, balance: &Balance, run: &NonlinearRun) -> String {
             format!("{range}small deviations circle, and {why}{by_run}")
         }
     }
-}
-
-/// Largest modulus below 1.
-fn beside_neutral(balance: &Balance) -> f64 {
-    let values = balance.small.linear.eigenvalues.iter().copied().map(modulus);
-    values.filter(|value| *value < 1.0).fold(0.0, f64::max)
 }
 
 /// The course of a swing to third order.
