@@ -39,6 +39,13 @@ export interface components {
             end: components["schemas"]["BatchEnd"];
         };
         BooleansOrNull: (boolean | null)[];
+        BounceState: {
+            x: number;
+            theta: number;
+            x_dot: number;
+            y_dot: number;
+            theta_dot: number;
+        };
         Boundary: {
             coefficient: number;
             kind: components["schemas"]["LossKind"];
@@ -279,6 +286,7 @@ export interface components {
             residual: number;
             iterations: number;
             fixed_point: components["schemas"]["ControllerFixedPoint"];
+            y_dot_change: number | null;
             open_loop: components["schemas"]["Eigenvalue"][];
             energy_eigenvalue: number;
             applied: components["schemas"]["JudgedLaw"] | null;
@@ -1335,6 +1343,11 @@ export interface components {
             reason: string;
             forced: components["schemas"]["Forced"][];
         };
+        MovingBounce: {
+            state: components["schemas"]["BounceState"];
+            change: components["schemas"]["BounceState"];
+            flight_time: number;
+        };
         NearestVertex: {
             vertex: number;
             clearance: number;
@@ -1347,6 +1360,10 @@ export interface components {
             outcome: components["schemas"]["Outcome"];
             max_theta: number | null;
             demand: components["schemas"]["Demand"];
+        };
+        NothingRepeats: {
+            reason: string;
+            moves: components["schemas"]["MovingBounce"] | null;
         };
         NumbersOrNull: (number | null)[];
         OneSided: {
@@ -1437,17 +1454,18 @@ export interface components {
             scene: components["schemas"]["Scene"];
             model: components["schemas"]["Model"];
             period: number;
-            least_period: number;
+            least_period: number | null;
             states: components["schemas"]["OrbitStates"];
-            residual: number;
-            steps: number;
-            energy: number;
-            drift: number;
+            residual: number | null;
+            steps: number | null;
+            energy: number | null;
+            drift: number | null;
             eigenvalues: components["schemas"]["Eigenvalue"][];
             residue: number | null;
             stable: boolean | null;
-            flight_time: number;
-            contact_velocity: number;
+            flight_time: number | null;
+            contact_velocity: number | null;
+            nothing_repeats: components["schemas"]["NothingRepeats"] | null;
             sweep: components["schemas"]["OrbitSweep"] | null;
             branch: components["schemas"]["OrbitBranch"] | null;
             changes: components["schemas"]["BranchChange"][] | null;
@@ -2464,6 +2482,7 @@ export type Basin = components['schemas']['Basin'];
 export type BatchEnd = components['schemas']['BatchEnd'];
 export type BatchLine = components['schemas']['BatchLine'];
 export type BooleansOrNull = components['schemas']['BooleansOrNull'];
+export type BounceState = components['schemas']['BounceState'];
 export type Boundary = components['schemas']['Boundary'];
 export type BranchChange = components['schemas']['BranchChange'];
 export type BranchChangeKind = components['schemas']['BranchChangeKind'];
@@ -2624,9 +2643,11 @@ export type MarginOf = components['schemas']['MarginOf'];
 export type MeasuredValues = components['schemas']['MeasuredValues'];
 export type MethodChoice = components['schemas']['MethodChoice'];
 export type Model = components['schemas']['Model'];
+export type MovingBounce = components['schemas']['MovingBounce'];
 export type NearestVertex = components['schemas']['NearestVertex'];
 export type NoiseModel = components['schemas']['NoiseModel'];
 export type NonlinearRun = components['schemas']['NonlinearRun'];
+export type NothingRepeats = components['schemas']['NothingRepeats'];
 export type NumbersOrNull = components['schemas']['NumbersOrNull'];
 export type OneSided = components['schemas']['OneSided'];
 export type OrbitBranch = components['schemas']['OrbitBranch'];

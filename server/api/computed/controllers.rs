@@ -223,6 +223,9 @@ pub struct ControllerAnswer {
     /// Number of doublings.
     iterations: u32,
     fixed_point: FixedPlace,
+    /// Change of `fixed_point.y_dot` by each bounce, m/s, where nothing holds the height, as with `air` or a wrong `table.assumed_restitution`: the
+    /// law is about the bounce at the height of the release. Null where the bounce repeats.
+    y_dot_change: Option<f64>,
     /// Eigenvalues on a table that stays level.
     open_loop: Vec<Eigenvalue>,
     /// Factor on a deviation of the height at each bounce: 1 if the table does not steer the energy.
@@ -249,7 +252,7 @@ impl ControllerAnswer {
         let Weights { state, input } = weights;
         let slow = || ("/weights", "the eigenvalues of this law did not converge".to_owned());
         let wanted = Wanted { friction: friction(&scene, regime), state, input };
-        let Controller { scene: designed, design, place, model, own, height } =
+        let Controller { scene: designed, design, place, sinks, model, own, height } =
             design_controller(&scene, &wanted).map_err(refusal)?;
         let with_x = state[0] != 0.0;
         let open = model.closed_loop([0.0; 4], states(with_x)).ok_or_else(slow)?;
@@ -282,6 +285,7 @@ impl ControllerAnswer {
             residual: design.residual,
             iterations: design.iterations,
             fixed_point: FixedPlace { x: place.x, bounce: FixedPoint { x: 0.0, ..place }.into() },
+            y_dot_change: sinks,
             open_loop: open.eigenvalues.iter().map(|&value| value.into()).collect(),
             energy_eigenvalue: height,
             applied,
@@ -320,7 +324,15 @@ impl ControllerAnswer {
                 shown(above)
             ));
         }
-        if self.energy_eigenvalue == 1.0 {
+        if let Some(change) = self.y_dot_change {
+            let (way, course) =
+                if change > 0.0 { ("loses", "is lost after") } else { ("gains", "has twice its speed after") };
+            notes.push(format!(
+                "no bounce repeats: each one changes y_dot by {change} m/s. The law and its margins are about the upright bounce of {} m/s, which {way}                  height and {course} about {} bounces at this rate (energy_gain would hold it)",
+                self.fixed_point.bounce.y_dot.abs(),
+                (self.fixed_point.bounce.y_dot / change).abs().ceil()
+            ));
+        } else if self.energy_eigenvalue == 1.0 {
             notes.push(
                 "the height of the bounce is not steered: what energy is left when the deviations have died out \
                  decides it (energy_gain steers it)"

@@ -4,13 +4,15 @@ use equipoise_physics::analysis::boundary::{period_two_angle, symmetric_orbit};
 use equipoise_physics::analysis::periodic_orbits::branch::{Branch, BranchPoint, BranchStart, ParameterRange, follow};
 use equipoise_physics::analysis::periodic_orbits::multipliers::Bifurcation;
 use equipoise_physics::analysis::periodic_orbits::{OrbitFailure, OrbitProblem, PeriodicOrbit, find, find_at_theta};
-use equipoise_physics::analysis::repeating::of_scene;
+use equipoise_physics::analysis::repeating::{NoRepeatingBounce, of_scene};
+use equipoise_physics::analysis::return_map::{ARC, SPIN, Vector, X, X_DOT, Y_DOT};
 use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::scene::{Field, FieldKind, Name, Scene, Value, field};
 use nalgebra::Complex;
 use serde_json::json;
 
+use crate::api::computed::stability::verdict::nothing_repeats;
 use crate::api::prelude::*;
 use crate::api::scene::field_text;
 use crate::api::shared::write;
@@ -277,6 +279,62 @@ struct BranchChange {
     detail: &'static str,
 }
 
+/// Why the upright bounce of the scene does not repeat, and what it does instead.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+struct NothingRepeats {
+    /// The reason in a sentence.
+    reason: String,
+    /// The upright bounce; null where the body comes to rest, misses the table, or has no such bounce.
+    moves: Option<Moves>,
+}
+
+/// A bounce beside the upright one, and how each such bounce changes the state.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "MovingBounce")]
+struct Moves {
+    /// State just before a contact.
+    state: BounceState,
+    /// Change of that state by a bounce.
+    change: BounceState,
+    /// Length of the bounce, s.
+    flight_time: f64,
+}
+
+/// A state just before a contact, or a change of it.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+struct BounceState {
+    /// Horizontal position, m.
+    x: f64,
+    /// Angle, rad.
+    theta: f64,
+    /// Horizontal velocity, m/s.
+    x_dot: f64,
+    /// Vertical velocity, m/s.
+    y_dot: f64,
+    /// Angular velocity, rad/s.
+    theta_dot: f64,
+}
+
+impl NothingRepeats {
+    fn new(scene: &Scene, why: &NoRepeatingBounce) -> Self {
+        let angle = |arc: f64| if has_angle(scene) { arc / scene.model().rod.radius_of_gyration } else { 0.0 };
+        let of = |vector: &Vector| BounceState {
+            x: vector[X],
+            theta: angle(vector[ARC]),
+            x_dot: vector[X_DOT],
+            y_dot: vector[Y_DOT],
+            theta_dot: angle(vector[SPIN]),
+        };
+        let moves = match why {
+            NoRepeatingBounce::Moves { at, change, flight_time } => {
+                Some(Moves { state: of(at), change: of(change), flight_time: *flight_time })
+            }
+            _ => None,
+        };
+        Self { reason: nothing_repeats(scene, why), moves }
+    }
+}
+
 /// Answer of `/v1/periodic-orbits`.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 #[schemars(rename = "PeriodicOrbits")]
@@ -284,27 +342,31 @@ pub struct PeriodicOrbitAnswer {
     scene: Resolved,
     model: ModelChoice,
     period: u64,
-    /// Smallest divisor of `period` after which the orbit recurs.
-    least_period: usize,
+    /// Smallest divisor of `period` after which the orbit recurs. Null if nothing repeats.
+    least_period: Option<usize>,
+    /// The states of the orbit; none if nothing repeats.
     #[schemars(with = "OrbitStates")]
     states: Table,
-    /// Residual of the equations, as a share of the scene's speed.
-    residual: f64,
-    /// Steps of the iteration.
-    steps: u32,
-    /// Energy per unit mass at an impact, m²/s².
-    energy: f64,
-    /// Mean horizontal velocity, m/s. Zero up to rounding, but for a body that its table or the air lets drift at one speed alone.
-    drift: f64,
+    /// Residual of the equations, as a share of the scene's speed. Null if nothing repeats.
+    residual: Option<f64>,
+    /// Steps of the iteration. Null if nothing repeats.
+    steps: Option<u32>,
+    /// Energy per unit mass at an impact, m²/s². Null if nothing repeats.
+    energy: Option<f64>,
+    /// Mean horizontal velocity, m/s. Zero up to rounding, but for a body that its table or the air lets drift at one speed alone. Null if nothing
+    /// repeats.
+    drift: Option<f64>,
     eigenvalues: Vec<Eigenvalue>,
     /// Greene's residue of the eigenvalue pair of the angle: stable from 0 to 1. Null for a point mass.
     residue: Option<f64>,
-    /// Null on the boundary itself.
+    /// Null on the boundary itself, and if nothing repeats.
     stable: Option<bool>,
-    /// Length of the period, s.
-    flight_time: f64,
-    /// Vertical velocity of the contact point at the impact nearest to grazing, m/s.
-    contact_velocity: f64,
+    /// Length of the period, s. Null if nothing repeats.
+    flight_time: Option<f64>,
+    /// Vertical velocity of the contact point at the impact nearest to grazing, m/s. Null if nothing repeats.
+    contact_velocity: Option<f64>,
+    /// Null where an orbit was found.
+    nothing_repeats: Option<NothingRepeats>,
     sweep: Option<OrbitSweep>,
     #[schemars(with = "Option<OrbitBranch>")]
     branch: Option<Table>,
@@ -332,7 +394,16 @@ impl PeriodicOrbitAnswer {
         if !has_angle(scene) {
             notes.push("theta is the angle of the velocity from straight down, theta_dot is 0 and residue is null: a point mass has no angle".to_owned());
         }
-        let setting = OrbitProblem::of(scene).map_err(|why| ("/scene", why))?;
+        // The upright bounce is the result, and so is that it does not repeat.
+        let is_upright = request.start == BranchStart::Upright && request.sweep.is_none();
+        let nothing = || if is_upright { of_scene(scene).err() } else { None };
+        let setting = match OrbitProblem::of(scene) {
+            Ok(setting) => setting,
+            Err(why) => {
+                let nothing = nothing().ok_or(Refusal::At("/scene", why))?;
+                return Ok(Self::without_orbit(request, &nothing, notes));
+            }
+        };
         let branch = match request.sweep {
             Some(SweptRange { field: name, from, to, points }) => {
                 let sweep = ParameterRange { scene, name, from, to };
@@ -342,7 +413,13 @@ impl PeriodicOrbitAnswer {
         };
         let orbit = match &branch {
             Some(branch) => branch.points[branch.start].orbit.clone(),
-            None => one(scene, &setting, period, request.start, &mut notes).map_err(refuse)?,
+            None => match one(scene, &setting, period, request.start, &mut notes) {
+                Ok(orbit) => orbit,
+                Err(failure) => {
+                    let nothing = nothing().ok_or_else(|| refuse(failure))?;
+                    return Ok(Self::without_orbit(request, &nothing, notes));
+                }
+            },
         };
         let ones = orbit.multipliers.eigenvalues.iter().filter(|value| **value == Complex::new(1.0, 0.0)).count();
         notes.push(
@@ -387,17 +464,18 @@ impl PeriodicOrbitAnswer {
             scene: Resolved(*scene),
             model: ModelChoice::of(scene),
             period: request.period,
-            least_period: orbit.least_period,
+            least_period: Some(orbit.least_period),
             states: states(&orbit),
-            residual: orbit.residual,
-            steps: orbit.steps,
-            energy: orbit.energy,
-            drift: orbit.drift,
+            residual: Some(orbit.residual),
+            steps: Some(orbit.steps),
+            energy: Some(orbit.energy),
+            drift: Some(orbit.drift),
             eigenvalues: orbit.multipliers.eigenvalues.iter().map(|&value| value.into()).collect(),
             residue: orbit.multipliers.residue,
             stable: orbit.multipliers.stable,
-            flight_time: orbit.flight_time,
-            contact_velocity: orbit.contact_speed,
+            flight_time: Some(orbit.flight_time),
+            contact_velocity: Some(orbit.contact_speed),
+            nothing_repeats: None,
             sweep,
             branch: branch.as_ref().map(|branch| table_of(&BRANCH, &branch.points)),
             changes: branch.as_ref().map(changes),
@@ -405,6 +483,35 @@ impl PeriodicOrbitAnswer {
             points: branch.map_or_else(Vec::new, |branch| branch.points),
             critical: upright.map(|small| small.linear.critical_tilt_gain),
         })
+    }
+
+    /// The answer on a scene whose upright bounce does not repeat.
+    fn without_orbit(request: &PeriodicOrbitRequest, why: &NoRepeatingBounce, mut notes: Vec<String>) -> Self {
+        let scene = &request.scene;
+        notes.push("no orbit was found: nothing_repeats says what the upright bounce does instead; a guess may lead to another orbit".to_owned());
+        Self {
+            scene: Resolved(*scene),
+            model: ModelChoice::of(scene),
+            period: request.period,
+            least_period: None,
+            states: table_of(&STATES[..4], &[]),
+            residual: None,
+            steps: None,
+            energy: None,
+            drift: None,
+            eigenvalues: Vec::new(),
+            residue: None,
+            stable: None,
+            flight_time: None,
+            contact_velocity: None,
+            nothing_repeats: Some(NothingRepeats::new(scene, why)),
+            sweep: None,
+            branch: None,
+            changes: None,
+            notes,
+            points: Vec::new(),
+            critical: None,
+        }
     }
 
     /// Approximate number of bounces computed.
@@ -435,10 +542,7 @@ fn one(
     notes: &mut Vec<String>,
 ) -> Result<PeriodicOrbit, OrbitFailure> {
     match start {
-        BranchStart::Upright => find(setting, period, &setting.upright()).map_err(|failure| match of_scene(scene) {
-            Err(why) if !setting.is_rod => OrbitFailure::Scene(format!("{failure}: {why}")),
-            Ok(_) | Err(_) => failure,
-        }),
+        BranchStart::Upright => find(setting, period, &setting.upright()),
         BranchStart::Near(state) => find(setting, period, &state),
         BranchStart::Symmetric(theta) => {
             let state = symmetric_orbit(&setting.body, theta).ok_or_else(|| {

@@ -43,7 +43,6 @@ fn named(analysis: Analysis) -> &'static str {
         Analysis::LinearRun => "the method `linear` of `trajectories`",
         Analysis::LinearSolution => "the linear solution in `precision`",
         Analysis::JacobianAtFixedPoint => "`jacobians` at the fixed point",
-        Analysis::PeriodicOrbit => "`periodic-orbits`",
         Analysis::SymmetricOrbit => "the family `symmetric` of `periodic-orbits`",
         Analysis::LinearMap => "`regions` of `residue` and `spectral_radius`",
         Analysis::Basin => "a basin",

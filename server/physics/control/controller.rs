@@ -4,7 +4,7 @@
 
 use crate::analysis::fixed_point::FixedPoint;
 use crate::analysis::jacobian::{eigenvalues, modulus};
-use crate::analysis::repeating::{NoRepeatingBounce, RepeatingBounce, find_planned};
+use crate::analysis::repeating::{NoRepeatingBounce, RepeatingBounce, find, find_planned};
 use crate::analysis::return_map::{ARC, PLANNED_SPEED, ReturnMap, SOLVED, SPIN, Vector, X, X_DOT, Y_DOT};
 use crate::analysis::small_deviations::fixed_point_at;
 use crate::control::bounce_model::BounceModel;
@@ -44,6 +44,8 @@ pub struct Controller {
     pub design: LqrDesign,
     /// The bounce in place.
     pub place: FixedPoint,
+    /// Change of its ẏ by each bounce, m/s, where nothing holds its height.
+    pub sinks: Option<f64>,
     /// The model of the bounce with the contact that the law is for, by gains that the table is told.
     pub model: BounceModel,
     /// That with the contact of the scene.
@@ -94,7 +96,7 @@ pub fn design_controller(scene: &Scene, wanted: &Wanted) -> Result<Controller, C
         let model = if is_own { own } else { model(&Body { friction: wanted.friction, ..given }) };
         let design = design_lqr(&model, wanted.state, wanted.input).map_err(ControllerFailure::Design)?;
         let designed = with_law(scene, design.gain)?;
-        let found = repeating(&designed).map_err(|why| none(format!("no bounce repeats: {why}")))?;
+        let found = upright_bounce(&designed).map_err(|why| none(format!("no bounce repeats: {why}")))?;
         let place = fixed_point_at(&found.map, &found.at);
         // But for rounding, and for a planned motion.
         let apart = |index: usize| (found.at[index] - at[index]).abs();
@@ -103,7 +105,10 @@ pub fn design_controller(scene: &Scene, wanted: &Wanted) -> Result<Controller, C
         if is_same {
             refuse(&designed, &at).map_err(none)?;
             let place = FixedPoint { theta: 0.0, theta_dot: 0.0, ..place };
-            return Ok(Controller { scene: designed, design, place, model, own, height: height_eigenvalue(&found) });
+            let (height, change) =
+                (height_eigenvalue(&found), found.map.image(&at).map(|image| image[Y_DOT] - at[Y_DOT]));
+            let sinks = change.filter(|change| change.abs() > SOLVED * place.speed);
+            return Ok(Controller { scene: designed, design, place, sinks, model, own, height });
         }
     }
     Err(none("the law and the bounce that repeats under it do not come together".to_owned()))
@@ -116,7 +121,8 @@ fn upright(speed: f64) -> Vector {
     at
 }
 
-fn repeating(scene: &Scene) -> Result<RepeatingBounce, NoRepeatingBounce> {
+/// The bounce that repeats; where nothing holds its height, the bounce at the height of the release or of the target that repeats but for that.
+fn upright_bounce(scene: &Scene) -> Result<RepeatingBounce, NoRepeatingBounce> {
     let body = scene.model();
     let map = ReturnMap::new(&body, 1);
     let mut guess = upright(upright_speed(scene).ok_or(NoRepeatingBounce::NotFound)?);
@@ -134,22 +140,32 @@ fn repeating(scene: &Scene) -> Result<RepeatingBounce, NoRepeatingBounce> {
         reference[Y_DOT] = -speed;
     }
     // Where the kept quantities of the release are no height, that of the guess.
-    find_planned(&map, &guess, &reference).or_else(|_| find_planned(&map, &guess, &guess))
+    let repeats = find_planned(&map, &guess, &reference).or_else(|_| find_planned(&map, &guess, &guess));
+    repeats.or_else(|why| {
+        let goes = matches!(why, NoRepeatingBounce::Moves { .. } | NoRepeatingBounce::Rests);
+        let held = goes.then(|| find(&map.holding(&[Y_DOT]), &guess, &guess).ok()).flatten();
+        // A table that plans before the last strike plans for another height.
+        let at = held.map(|held| held.at).filter(|at| body.lag <= map.shortest_flight(at));
+        let here = at.and_then(|at| Some((at, map.derivative(&at)?)));
+        here.map(|(at, here)| RepeatingBounce::bare(&map, at, here.matrix)).ok_or(why)
+    })
 }
 
 /// Refuses a bounce that is not upright, or not on the table.
 fn refuse(scene: &Scene, at: &Vector) -> Result<(), String> {
     let theta = at[ARC] / scene.model().rod.radius_of_gyration;
-    let beside = format!(
-        "the table tilts by {} rad beside its law (table.errors, body.offset)",
-        rounded(scene.running_model.constant_tilt)
-    );
+    let tilt = scene.running_model.constant_tilt;
+    let beside = format!("the table tilts by {} rad beside its law (table.errors, body.offset)", rounded(tilt));
     if theta.abs() > UPRIGHT {
-        return Err(format!(
-            "{beside}, and without a gain on x the body is balanced at {} rad and {} m/s and not upright; give x a weight",
-            rounded(theta),
-            rounded(at[X_DOT])
-        ));
+        let leans =
+            format!("the body is balanced at {} rad and {} m/s and not upright", rounded(theta), rounded(at[X_DOT]));
+        return Err(if tilt == 0.0 {
+            format!(
+                "a wind or the turning of the table pushes the body aside, so that {leans}, and a law is about an upright bounce"
+            )
+        } else {
+            format!("{beside}, and without a gain on x {leans}; give x a weight")
+        });
     }
     if at[X].abs() > scene.rules().half_length {
         return Err(format!(

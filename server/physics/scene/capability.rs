@@ -14,8 +14,6 @@ pub enum Analysis {
     LinearRun,
     /// Derivative of the map at its fixed point.
     JacobianAtFixedPoint,
-    /// Bounces that repeat after some of them.
-    PeriodicOrbit,
     /// Mirror-symmetric orbits of period 2.
     SymmetricOrbit,
     /// Map of residues or spectral radii.
@@ -62,14 +60,13 @@ pub enum Need {
 }
 
 /// The table: each analysis with its needs, in the order in which they are looked at.
-pub const CAPABILITIES: [(Analysis, &[Need]); 13] = {
+pub const CAPABILITIES: [(Analysis, &[Need]); 12] = {
     use Analysis::*;
     use Need::*;
     [
         (LinearRun, &[PlainRod, NoEndings, VerticalEnergy, Angle, RepeatingBounce]),
         (LinearSolution, &[PlainRod, VerticalEnergy, Angle, RepeatingBounce]),
         (JacobianAtFixedPoint, &[RepeatingBounce]),
-        (PeriodicOrbit, &[RepeatingBounce]),
         (SymmetricOrbit, &[Angle]),
         (LinearMap, &[NoTurning]),
         (Basin, &[Angle]),
