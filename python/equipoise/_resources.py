@@ -72,9 +72,11 @@ height: without a sweep any other `theta` is a 422 that names the right angle. W
 that of contacts that stick to a `matched` table. Of a body beyond the rod (air, a turning table, a delay,
 constant errors, state feedback) that orbit is the guess for the one through `theta`, at the energy that it
 has. Such a body may keep neither the energy nor the drift along its orbits; then the orbit has those that its
-equations give it. With friction each contact is in the mode that it takes (sticking, sliding, slip reversal),
-in which the map is smooth. An orbit with a contact at the switch between two modes is a 422, and a branch
-ends there with that reason.
+equations give it. If the upright bounce of the scene does not repeat, `nothing_repeats` says why and what
+each bounce changes, and the fields of the orbit are null. A `guess`, a `family` or a `sweep` without an orbit
+is a 422. With friction each contact is in the mode that it takes (sticking, sliding, slip reversal), in which
+the map is smooth. An orbit with a contact at the switch between two modes is a 422, and a branch ends there
+with that reason.
 
 Fields, besides those of a scene:
     preset
@@ -141,8 +143,9 @@ linear model of one bounce (LQR: the discrete algebraic Riccati equation, solved
 proportional tilt leaves the body circling and drifting; this law brings it to rest in place. It also does so
 on a contact that sticks, where no proportional tilt of a table without `slide: matched` is stable. The model
 is the derivative of the return map of the rig as it is: its errors, its delay, its pivot and the air are in
-it. A constant tilt beside the law moves the place of rest, `fixed_point.x`. `given` judges the scene's own
-law.
+it. A constant tilt beside the law moves the place of rest, `fixed_point.x`. Where nothing holds the height
+(air, a wrong belief in the restitution), the law is about the upright bounce of the release, and
+`y_dot_change` says how fast its height goes. `given` judges the scene's own law.
 
 Fields, besides those of a scene:
     preset

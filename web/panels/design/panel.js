@@ -71,6 +71,7 @@ const readGains = readCurves(
 function Law({ found: [answer, figure], path, use }) {
   const { gain, eigenvalues, open_loop: free, spectral_radius: radius, bounces_per_decade: decade, regions } = answer;
   const [margin] = answer.margins;
+  const sinks = answer.y_dot_change !== null;
   const rows = [
     ...GAINS.filter(([name]) => name in gain).map(([name, letter, unit]) => [
       sign(`K_${letter}`),
@@ -93,7 +94,7 @@ function Law({ found: [answer, figure], path, use }) {
   return html`<div class="study-sheet">
     <p class="study-act">
       ${use && html`<button type="button" id="design-run" class="primary" onClick=${() => use(answer.scene)}>Use this law</button>`}
-      <span role="status">${answer.stable ? 'Every small deviation that is fed back dies out.' : 'This law does not hold: a small deviation grows.'}</span>
+      <span role="status">${answer.stable ? `Every small deviation that is fed back dies out${sinks ? ', but nothing holds the height' : ''}.` : 'This law does not hold: a small deviation grows.'}</span>
     </p>
     <${Picture} name="design" figure=${figure} read=${readGains}
       label=${`Eigenvalues of the closed loop on the unit circle, the largest ${number(radius)}; they are in the table. Beside them, the largest as the gain is scaled.`}
