@@ -121,6 +121,7 @@ pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> LinearVerdict 
     sort_eigenvalues(&mut eigenvalues);
     let circles = matches!(class, AngleClass::Elliptic | AngleClass::Parabolic);
     let rotation = residue.filter(|_| circles).map(|residue| libm::acos((1.0 - 2.0 * residue).clamp(-1.0, 1.0)));
+    let [lower_energy_gain, upper_energy_gain] = energy_gains(scene, fixed_point, residue);
     LinearVerdict {
         class,
         residue,
@@ -128,30 +129,43 @@ pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> LinearVerdict 
         eigenvalues,
         lower_tilt_gain,
         critical_tilt_gain,
-        lower_energy_gain: 0.0,
-        upper_energy_gain: upper_energy_gain(scene, fixed_point),
+        lower_energy_gain,
+        upper_energy_gain,
         energy_eigenvalue,
     }
 }
 
-/// 2/((1 + e)V²), s²/m²: the greatest energy gain, at a bounce whose height moves apart from all else and is the target. Infinite where the flight, a
-/// delay, a program or a lean takes part in it, where the bounce has another energy, which moves with the gain, and where the law has no gain.
-pub(super) fn upper_energy_gain(scene: &Scene, fixed_point: &FixedPoint) -> f64 {
+/// The least and the greatest energy gain, s²/m², at a bounce whose height moves apart from all else: 0 and 2/((1 + e)V²) where its energy is the target.
+/// With a wrong belief V² = A + B/κ_E, so that the eigenvalue of the height is −1 at (2/(1 + e) − B)/A, the body is at rest at −B/A, and the residue, which
+/// goes with V², is 1 at B/(V²/R − A). Infinite above where the flight, a delay, a program or a lean takes part, and where the law has no gain.
+pub(super) fn energy_gains(scene: &Scene, fixed_point: &FixedPoint, residue: Option<f64>) -> [f64; 2] {
+    const NONE: [f64; 2] = [0.0, f64::INFINITY];
     let body = scene.model();
     let falls_freely = body.drag.is_none_or(|drag| drag.linear == 0.0);
     let is_alone =
         falls_freely && !scene.moves_late() && body.program.is_none() && fixed_point.theta.abs() <= PARABOLIC;
     let Rod { contact_distance, gravity, restitution, energy_feedback, .. } = body.rod;
+    if !is_alone || energy_feedback == EnergyFeedback::OneStrike {
+        return NONE;
+    }
     let (square, drift) = (fixed_point.speed * fixed_point.speed, fixed_point.x_dot);
-    let of_drift = if energy_feedback == EnergyFeedback::Total { drift * drift } else { 0.0 };
-    let is_target = scene.target_height(1).is_none_or(|height| {
-        let aimed = 2.0 * gravity * (height - contact_distance);
-        (square + of_drift - aimed).abs() <= PARABOLIC * aimed
-    });
-    if is_alone && is_target && energy_feedback != EnergyFeedback::OneStrike {
-        2.0 / ((1.0 + restitution) * square)
-    } else {
-        f64::INFINITY
+    let held = if energy_feedback == EnergyFeedback::Total { drift * drift } else { 0.0 };
+    let aimed = scene.target_height(1).map_or(square, |height| 2.0 * gravity * (height - contact_distance) - held);
+    if (square - aimed).abs() <= PARABOLIC * aimed {
+        return [0.0, 2.0 / ((1.0 + restitution) * square)];
+    }
+    let beside = (square - aimed) * scene.energy_gain();
+    let of_angle = match residue {
+        _ if aimed <= 0.0 || body.feedback().is_some() => return NONE,
+        Some(residue) => beside / (square / residue - aimed),
+        None if body.is_point => f64::INFINITY,
+        None => return NONE,
+    };
+    let of_angle = if of_angle > 0.0 { of_angle } else { f64::INFINITY };
+    let of_height = (2.0 / (1.0 + restitution) - beside) / aimed;
+    match beside > 0.0 {
+        true => [if of_angle.is_finite() { of_angle } else { 0.0 }, of_height],
+        false => [-beside / aimed, of_height.min(of_angle)],
     }
 }
 

@@ -29,7 +29,7 @@ pub const MOST_VALUES: u64 = 300;
 /// Number of gains of a scene whose ends may have to be searched.
 pub fn searched_gains(scene: &Scene) -> u64 {
     let model = scene.model();
-    if scene.has_noise() {
+    if is_plain(&scene.with_tilt_law()) || scene.has_noise() {
         return 0;
     }
     let is_plain = is_plain(&scene.with_tilt_law());
@@ -104,7 +104,9 @@ pub fn losses(scene: &Scene, small: &SmallDeviations, boundary: Option<f64>) -> 
     }
     if linear.energy_eigenvalue < 1.0 && linear.upper_energy_gain.is_finite() {
         // The speeds of upright bounces follow u ↦ u(1 + ½K(V² − u²)), K = (1 + e)κ_E, which doubles its period at KV² = 2 with 4K = 8/V².
-        let coefficient = boundary.map(|_| 8.0 / (fixed_point.speed * fixed_point.speed));
+        // With a wrong belief V is another one there.
+        let believes = scene.assumed_restitution() == scene.parameters::<f64>().restitution;
+        let coefficient = boundary.filter(|_| believes).map(|_| 8.0 / (fixed_point.speed * fixed_point.speed));
         ends.push((Parameter::ENERGY_GAIN, linear.upper_energy_gain / scene.speed_factor(), coefficient));
     }
     if scene.model().feedback().is_some()

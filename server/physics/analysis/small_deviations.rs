@@ -5,7 +5,7 @@
 use crate::analysis::fixed_point::{FixedPoint, plain_bounce, plain_drift};
 use crate::analysis::gain_range::StableGains;
 use crate::analysis::jacobian::{modulus, sort_eigenvalues};
-use crate::analysis::linear_verdict::{AngleClass, LinearVerdict, PARABOLIC, class, linear_verdict, upper_energy_gain};
+use crate::analysis::linear_verdict::{AngleClass, LinearVerdict, PARABOLIC, class, energy_gains, linear_verdict};
 use crate::analysis::repeating::{
     self, Neutral, NoRepeatingBounce, ON_CIRCLE, ON_CIRCLE_TWICE, RepeatingBounce, SceneMap, find_planned, settled,
 };
@@ -167,7 +167,7 @@ fn about(scene: &Scene, bounce: RepeatingBounce, drift: Option<f64>) -> SmallDev
     {
         (linear.lower_tilt_gain, linear.critical_tilt_gain) = (lower, upper);
     }
-    linear.upper_energy_gain = upper_energy_gain(scene, &fixed_point);
+    [linear.lower_energy_gain, linear.upper_energy_gain] = energy_gains(scene, &fixed_point, linear.residue);
     // A wind or a table that is level at a speed alone keeps a drift that nothing else does.
     let is_kept = !map.has_place && fixed_point.x_dot.abs() > SOLVED * fixed_point.speed;
     let drifts = drift.is_some() || is_kept;

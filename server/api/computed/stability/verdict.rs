@@ -199,7 +199,7 @@ pub(crate) fn nothing_repeats(scene: &Scene, why: &NoRepeatingBounce) -> String 
     }
     if let NoRepeatingBounce::Moves { at, change, .. } = why {
         let speed = at[Y_DOT].abs();
-        let alone = why.moved().len() == 1 && change[Y_DOT] != 0.0;
+        let alone = why.moved().len() == 1 && why.moves(Y_DOT);
         if alone {
             let loses = change[Y_DOT] > 0.0;
             said.push(format!("every bounce {} energy, so no bounce repeats", if loses { "loses" } else { "gains" }));
