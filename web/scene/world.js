@@ -18,6 +18,8 @@ import { poseOn } from '../physics/flight.js';
 
 /** Height of the ruler below the scene, px. */
 const RULER = 22;
+/** Least width with room for the gravity beside the body, px. */
+const WIDE = 400;
 /** Height shown while no scene is typed, m. */
 const NO_SCENE_M = 0.3;
 
@@ -157,7 +159,8 @@ export class World extends CanvasView {
     const right = surface.width - 8;
     const { incline } = scene;
     const plane = incline && gravity < scene.gravity ? `plane at ${number((incline * 180) / Math.PI)}°, ` : '';
-    if (measured)
+    // Beside a body in a narrow picture it would lie over the symbols.
+    if (measured && surface.width >= WIDE)
       surface.text(`${plane}G = ${number(gravity)}\u202fm/s²`, right - 6, 46, { colour: 'muted', align: 'right' });
     if (!target) return;
     const row = Math.round(y(target.height)) + 0.5;
