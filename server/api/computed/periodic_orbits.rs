@@ -379,31 +379,35 @@ pub struct PeriodicOrbitAnswer {
 }
 
 impl PeriodicOrbitAnswer {
-    /// Finds the orbit, and follows its branch.
+    /// Finds the orbit, and follows its branch; of an upright bounce that does not repeat, tells what it does instead.
     ///
     /// # Errors
     /// The reason why there is no orbit.
     pub fn compute(request: &PeriodicOrbitRequest, go_on: impl FnMut() -> bool) -> Result<Self, Refusal> {
+        let scene = &request.scene;
+        let mut notes: Vec<String> = noiseless(scene, "the orbit").into_iter().collect();
+        if !has_angle(scene) {
+            notes.push("theta is the angle of the velocity from straight down, theta_dot is 0 and residue is null: a point mass has no angle".to_owned());
+        }
+        Self::with_orbit(request, notes.clone(), go_on).or_else(|refusal| {
+            let is_upright = request.start == BranchStart::Upright && request.sweep.is_none();
+            let nothing = if is_upright { of_scene(scene).err() } else { None };
+            nothing.map(|why| Self::without_orbit(request, &why, notes)).ok_or(refusal)
+        })
+    }
+
+    fn with_orbit(
+        request: &PeriodicOrbitRequest,
+        mut notes: Vec<String>,
+        go_on: impl FnMut() -> bool,
+    ) -> Result<Self, Refusal> {
         let scene = &request.scene;
         let refuse = |failure: OrbitFailure| match failure {
             OrbitFailure::Cancelled => Refusal::Cancelled,
             failure => Refusal::At(request.pointer(), failure.to_string()),
         };
         let period = request.period as usize;
-        let mut notes: Vec<String> = noiseless(scene, "the orbit").into_iter().collect();
-        if !has_angle(scene) {
-            notes.push("theta is the angle of the velocity from straight down, theta_dot is 0 and residue is null: a point mass has no angle".to_owned());
-        }
-        // The upright bounce is the result, and so is that it does not repeat.
-        let is_upright = request.start == BranchStart::Upright && request.sweep.is_none();
-        let nothing = || if is_upright { of_scene(scene).err() } else { None };
-        let setting = match OrbitProblem::of(scene) {
-            Ok(setting) => setting,
-            Err(why) => {
-                let nothing = nothing().ok_or(Refusal::At("/scene", why))?;
-                return Ok(Self::without_orbit(request, &nothing, notes));
-            }
-        };
+        let setting = OrbitProblem::of(scene).map_err(|why| ("/scene", why))?;
         let branch = match request.sweep {
             Some(SweptRange { field: name, from, to, points }) => {
                 let sweep = ParameterRange { scene, name, from, to };
@@ -413,13 +417,7 @@ impl PeriodicOrbitAnswer {
         };
         let orbit = match &branch {
             Some(branch) => branch.points[branch.start].orbit.clone(),
-            None => match one(scene, &setting, period, request.start, &mut notes) {
-                Ok(orbit) => orbit,
-                Err(failure) => {
-                    let nothing = nothing().ok_or_else(|| refuse(failure))?;
-                    return Ok(Self::without_orbit(request, &nothing, notes));
-                }
-            },
+            None => one(scene, &setting, period, request.start, &mut notes).map_err(refuse)?,
         };
         let ones = orbit.multipliers.eigenvalues.iter().filter(|value| **value == Complex::new(1.0, 0.0)).count();
         notes.push(

@@ -26,7 +26,7 @@ const LEAST_SWING: f64 = 1e-7;
 /// Share of its speed by which a swing may change a bounce, to first order: half of that with which it would end. Beyond, the run decides.
 const LARGEST_CHANGE: f64 = 0.5;
 
-/// Share of the swing of a release above which one has widened, whatever its normal form says.
+/// Times the swing of a release beyond which a swing has widened, whatever its normal form says.
 const WIDENED: f64 = 4.0;
 
 /// Bounces of that run. Chaotic swings that stay bounded for a while have left by then.
@@ -66,7 +66,8 @@ impl SmallRun {
         self.halves[0].max(self.halves[1])
     }
 
-    /// Tells whether the swing grew over the second half as small ones do that grow by a factor a bounce, so that nothing bounds it yet.
+    /// Tells whether the swing still grew in the second half, by more than the root of what a factor a bounce makes of a small one: nothing bounds it
+    /// yet.
     pub fn grew(&self, factor: f64) -> bool {
         let [early, late] = self.halves;
         late > early * libm::pow(factor, 0.25 * self.impacts as f64)
@@ -240,10 +241,12 @@ pub fn evidence(scene: &Scene, most: u64, go_on: &mut impl FnMut() -> bool) -> O
         Err(why) => return Some(Evidence::NothingRepeats(why)),
     };
     let mut balance = Balance::new(&judged, &orbit, small);
+    // A run of no more bounces would repeat the one that checks the scene.
+    let is_longer = most > CHECKED;
     // A drift that no first order tells may take the body off its table.
-    let may_leave = balance.small.drifts && scene.rules().half_length.is_finite();
+    let may_leave = is_longer && balance.small.drifts && scene.rules().half_length.is_finite();
     let decides = match (balance.small.motion, &balance.swing) {
-        (Motion::Circles(_) | Motion::DiesOut, _) if may_leave && most > CHECKED => true,
+        (Motion::Circles(_) | Motion::DiesOut, _) if may_leave => true,
         (Motion::Silent(_) | Motion::Grows(_), _) | (Motion::Circles(_), Some(Err(_))) => true,
         (Motion::Circles(_), _) if !balance.form_tells() => true,
         (Motion::Circles(_), Some(Ok(swing))) => {
@@ -252,7 +255,7 @@ pub fn evidence(scene: &Scene, most: u64, go_on: &mut impl FnMut() -> bool) -> O
         (Motion::Circles(_), None) => false,
         // A drift takes the body away from the place; and where a small swing dies out slowly, one of the size of the release may grow.
         (Motion::DiesOut, _) => {
-            (most > CHECKED && libm::pow(balance.small.slowest(), CHECKED as f64) > SLOW)
+            (is_longer && libm::pow(balance.small.slowest(), CHECKED as f64) > SLOW)
                 || balance.small.drifts && ReturnMap::of_cycle(&judged.model()).has_place
         }
     };
@@ -327,8 +330,9 @@ impl Balance {
             (Motion::DiesOut, _) if left => (Verdict::Unstable, DecidedBy::Nonlinear),
             (Motion::DiesOut, _) if self.small.drifts => (Verdict::StableDrifting, DecidedBy::Linear),
             (Motion::DiesOut, _) => (Verdict::StableInPlace, DecidedBy::Linear),
-            (Motion::Circles(_), _) if left && !self.form_tells() => (Verdict::Unstable, DecidedBy::Nonlinear),
-            (Motion::Circles(_), None) if left => (Verdict::Unstable, DecidedBy::Nonlinear),
+            (Motion::Circles(_), swing) if left && (swing.is_none() || !self.form_tells()) => {
+                (Verdict::Unstable, DecidedBy::Nonlinear)
+            }
             (Motion::Circles(_), None) => (Verdict::Elliptic, DecidedBy::Linear),
             // Without a normal form the run from a small start decides.
             (Motion::Circles(_), Some(Err(_))) => {
@@ -345,10 +349,9 @@ impl Balance {
                 (Verdict::WeaklyAttracting, DecidedBy::Nonlinear)
             }
             (Motion::Circles(_), Some(Ok(swing))) => match swing.course() {
-                Course::Circles if left => (Verdict::Unstable, DecidedBy::Nonlinear),
-                Course::Circles => (Verdict::Elliptic, DecidedBy::Linear),
                 Course::Grows | Course::Pumps | Course::Shifts => (Verdict::WeaklyUnstable, DecidedBy::Lyapunov),
-                Course::DiesOut | Course::Settles if left => (Verdict::Unstable, DecidedBy::Nonlinear),
+                _ if left => (Verdict::Unstable, DecidedBy::Nonlinear),
+                Course::Circles => (Verdict::Elliptic, DecidedBy::Linear),
                 // Near a strong resonance it may do what its normal form does not tell.
                 Course::DiesOut | Course::Settles if self.widened(swing) => {
                     (Verdict::WeaklyUnstable, DecidedBy::Nonlinear)

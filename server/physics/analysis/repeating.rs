@@ -368,8 +368,9 @@ pub fn find(map: &ReturnMap, guess: &Vector, reference: &Vector) -> Result<Repea
 /// Way of the angle and of the spin from one state to another, in parts of the bounce speed.
 fn turned(map: &ReturnMap, from: &Vector, to: &Vector) -> f64 {
     let speed = from[Y_DOT].abs();
-    let arc = (to[ARC] - from[ARC]).abs() * map.body.rod.gravity / (2.0 * speed);
-    arc.max((to[SPIN] - from[SPIN]).abs()) / speed
+    let way = between(map, from, to, &scales(map, speed));
+    let of_angle = [ARC, SPIN].into_iter().filter_map(|index| map.place_of(index));
+    of_angle.fold(0.0_f64, |most, place| most.max(way[place].abs())) / speed
 }
 
 /// The bounce at which the angle stays, and each one changes the velocity.

@@ -105,8 +105,8 @@ pub fn design_controller(scene: &Scene, wanted: &Wanted) -> Result<Controller, C
         if is_same {
             refuse(&designed, &at).map_err(none)?;
             let place = FixedPoint { theta: 0.0, theta_dot: 0.0, ..place };
-            let (height, change) =
-                (height_eigenvalue(&found), found.map.image(&at).map(|image| image[Y_DOT] - at[Y_DOT]));
+            let height = height_eigenvalue(&found);
+            let change = found.map.image(&at).map(|image| image[Y_DOT] - at[Y_DOT]);
             let sinks = change.filter(|change| change.abs() > SOLVED * place.speed);
             return Ok(Controller { scene: designed, design, place, sinks, model, own, height });
         }
@@ -140,15 +140,17 @@ fn upright_bounce(scene: &Scene) -> Result<RepeatingBounce, NoRepeatingBounce> {
         reference[Y_DOT] = -speed;
     }
     // Where the kept quantities of the release are no height, that of the guess.
-    let repeats = find_planned(&map, &guess, &reference).or_else(|_| find_planned(&map, &guess, &guess));
-    repeats.or_else(|why| {
-        let goes = matches!(why, NoRepeatingBounce::Moves { .. } | NoRepeatingBounce::Rests);
-        let held = goes.then(|| find(&map.holding(&[Y_DOT]), &guess, &guess).ok()).flatten();
-        // A table that plans before the last strike plans for another height.
-        let at = held.map(|held| held.at).filter(|at| body.lag <= map.shortest_flight(at));
-        let here = at.and_then(|at| Some((at, map.derivative(&at)?)));
-        here.map(|(at, here)| RepeatingBounce::bare(&map, at, here.matrix)).ok_or(why)
-    })
+    let why = match find_planned(&map, &guess, &reference).or_else(|_| find_planned(&map, &guess, &guess)) {
+        Err(why @ (NoRepeatingBounce::Moves { .. } | NoRepeatingBounce::Rests)) => why,
+        other => return other,
+    };
+    let Ok(RepeatingBounce { at, .. }) = find(&map.holding(&[Y_DOT]), &guess, &guess) else { return Err(why) };
+    // A table that plans before the last strike plans for another height.
+    if body.lag > map.shortest_flight(&at) {
+        return Err(why);
+    }
+    let here = map.derivative(&at).ok_or(why)?;
+    Ok(RepeatingBounce::bare(&map, at, here.matrix))
 }
 
 /// Refuses a bounce that is not upright, or not on the table.
