@@ -67,7 +67,7 @@ fn hold_each(
         answered.set(answered.get() + u32::from(tried(&request, pixels)));
     });
     println!("{}: {} of {cases} answered", resource.path, answered.get());
-    // Two fifths to nearly all requests are answered. The chance of less than a tenth is one in a million.
+    // Two fifths to nearly all requests are answered. The chance of less than a tenth is below one in ten million.
     assert!(answered.get() * 10 >= cases, "{}: only {} of {cases} answered", resource.path, answered.get());
 }
 
@@ -503,8 +503,9 @@ impl Made {
                 // A table does not turn and plan, and nothing is a limit of its motion then.
                 Name::TiltRate | Name::PivotX | Name::PivotDepth => self.above > 0.8 && !plain && !is_point,
                 Name::NoiseModel if self.above > 0.8 => false,
-                Name::Drag | Name::RotationDrag => {
-                    (0.2..0.35).contains(&self.above) && !plain && matches!(self.body, Body::Rod)
+                Name::Drag | Name::RotationDrag | Name::Wind => {
+                    let has_air = (0.2..0.35).contains(&self.above) && !plain && matches!(self.body, Body::Rod);
+                    has_air && (row.name != Name::Wind || said(Name::Drag))
                 }
                 Name::Delay | Name::Prediction => (0.5..0.7).contains(&self.above) && !plain && !is_point,
                 _ if row.path.starts_with("table.errors.") => self.above > 0.85 && !plain && !is_point,

@@ -142,6 +142,11 @@ async fn energy_feedback_is_weakly_unstable_or_weakly_attracting() {
         assert_eq!(answer["lyapunov"]["kind"], "repelling");
         assert!((number_at(&answer, "/lyapunov/coefficient") - growth).abs() < 2e-4);
     }
+    let upright = of("case-4", "scene.release.theta=1e-20").await;
+    assert_eq!(
+        (&upright["lyapunov"]["kind"], &upright["lyapunov"]["escape_bounces"]),
+        (&"repelling".into(), &Value::Null)
+    );
     let answer = of("case-5", "scene.table.tilt_gain=1.2").await;
     assert_eq!(answer["verdict"]["text"], "weakly attracting, 2000 bounces survived");
     assert_eq!(

@@ -14,6 +14,7 @@ use equipoise_physics::analysis::{basin, losses, regularity};
 use equipoise_physics::scene::Scene;
 
 use crate::api::prelude::*;
+use crate::http::request::reader::LARGEST_EXACT;
 
 /// Distance of the rotation number from the resonances 1/3 and 1/4, in turns per bounce, within which the answer names them.
 const NEAR: f64 = 0.02;
@@ -137,7 +138,7 @@ pub(crate) struct Lyapunov {
     #[schemars(with = "LyapunovKind")]
     pub(crate) kind: &'static str,
     /// Approximate number of impacts in which a swing as large as that of this release leaves upright, 1/(2ℓA₀²). Null unless repelling, and for
-    /// a release that does not swing.
+    /// a release that does not swing: the number would be 2⁵³ or more.
     pub(crate) escape_bounces: Option<u64>,
     detail: String,
 }
@@ -175,8 +176,7 @@ impl Lyapunov {
     fn of_swing(Swing { form, amplitude, .. }: &Swing, rotation: f64) -> Self {
         let coefficient = form.growth;
         let contacts = 0.5 / (coefficient * amplitude * amplitude);
-        // A cast keeps to the range of the type.
-        let escape_bounces = (coefficient > 0.0 && contacts.is_finite()).then_some(contacts as u64);
+        let escape_bounces = (coefficient > 0.0 && contacts <= LARGEST_EXACT as f64).then_some(contacts as u64);
         let kind = match coefficient {
             growth if growth > 0.0 => "repelling",
             growth if growth < 0.0 => "attracting",
