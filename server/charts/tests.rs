@@ -112,6 +112,12 @@ fn eigenvalues_say_the_verdict_with_its_numbers() {
     ] {
         assert!(text.contains(wanted), "{wanted} is not in {text}");
     }
+    for (lower, critical, wanted) in
+        [(1.0, f64::INFINITY, "stable κ: 1 and more."), (f64::NEG_INFINITY, 1.5, "stable κ: up to κ_c = 1.5.")]
+    {
+        let text = sound(&verdict(Some(Spectrum { lower, critical, ..spectrum(&[(0.6, 0.8)]) })));
+        assert!(text.contains(wanted), "{wanted} is not in {text}");
+    }
 }
 
 #[test]

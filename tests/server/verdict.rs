@@ -147,6 +147,8 @@ async fn energy_feedback_is_weakly_unstable_or_weakly_attracting() {
         (&upright["lyapunov"]["kind"], &upright["lyapunov"]["escape_bounces"]),
         (&"repelling".into(), &Value::Null)
     );
+    let reason = upright["verdict"]["reason"].as_str().unwrap();
+    assert!(reason.contains("this release has none"), "{reason}");
     let answer = of("case-5", "scene.table.tilt_gain=1.2").await;
     assert_eq!(answer["verdict"]["text"], "weakly attracting, 2000 bounces survived");
     assert_eq!(

@@ -29,9 +29,9 @@ pub struct Spectrum<'a> {
     pub eigenvalues: &'a [(f64, f64)],
     /// κ of the scene. NaN if no κ balances.
     pub tilt_gain: f64,
-    /// Smallest κ that balances, or NaN.
+    /// Smallest κ that balances, −∞ without an end, or NaN.
     pub lower: f64,
-    /// κ_c, the largest κ that balances, or NaN.
+    /// κ_c, the largest κ that balances, ∞ without an end, or NaN.
     pub critical: f64,
     /// Greene's residue. A point mass has none.
     pub residue: Option<f64>,
@@ -120,9 +120,15 @@ fn far_mark(svg: &mut Svg, (x, y): Point, re: f64, words: Option<&str>) {
 fn sentence(spectrum: &Spectrum<'_>) -> String {
     let number = |value: f64| significant(value, 4);
     let (lower, critical) = (number(spectrum.lower), number(spectrum.critical));
+    let stable = match (spectrum.lower.is_finite(), spectrum.critical.is_finite()) {
+        (true, true) => format!("{lower} to κ_c = {critical}"),
+        (true, false) => format!("{lower} and more"),
+        (false, true) => format!("up to κ_c = {critical}"),
+        (false, false) => "all".to_owned(),
+    };
     let mut text = match spectrum.lower.is_nan() {
         true => "No tilt gain balances.".to_owned(),
-        false => format!("κ = {}; stable κ: {lower} to κ_c = {critical}.", number(spectrum.tilt_gain)),
+        false => format!("κ = {}; stable κ: {stable}.", number(spectrum.tilt_gain)),
     };
     if let Some(residue) = spectrum.residue {
         text.push_str(&format!(" Residue R = {} (stable: 0 to 1).", number(residue)));

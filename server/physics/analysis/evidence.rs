@@ -41,6 +41,9 @@ const LEAST_WAY: f64 = 1e-9;
 /// Bounces up to which a drift that takes the body off its table counts.
 const LEAVES: f64 = 1e6;
 
+/// Most bounces that are told, 2⁵³: every reader of JSON keeps them exact, and more are rounding.
+const MOST_TOLD: f64 = (1_u64 << 53) as f64;
+
 /// Runs of the ensemble of a scene with noise.
 pub const NOISY_RUNS: u64 = 200;
 
@@ -384,7 +387,7 @@ impl Balance {
         let speed = self.small.fixed_point.speed;
         // The speed grows by energy/V² of itself a bounce, and R with its square.
         let bounces = -0.5 * libm::log(self.small.linear.residue?) * speed * speed / energy;
-        (energy > 0.0 && bounces.is_finite()).then_some(bounces as u64)
+        (energy > 0.0 && bounces < MOST_TOLD).then_some(bounces as u64)
     }
 }
 
@@ -416,6 +419,14 @@ impl Swing {
             }
         }
         Ok(Self { form, amplitude, of_speed, place: bounce.at[X], shifts, energy, farther })
+    }
+
+    /// Bounces in which a swing as large as that of the release leaves upright, 1/(2ℓA₀²), to third order; `None` where it does not grow, and for
+    /// a release that does not swing but for rounding.
+    pub fn escape_bounces(&self) -> Option<f64> {
+        let (growth, amplitude) = (self.form.growth, self.amplitude);
+        let bounces = 0.5 / (growth * amplitude * amplitude);
+        (growth > 0.0 && bounces < MOST_TOLD).then_some(bounces)
     }
 
     /// Tells whether it changes the speed of the bounce so much that no normal form tells whether it leaves.

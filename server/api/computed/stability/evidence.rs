@@ -14,7 +14,6 @@ use equipoise_physics::analysis::{basin, losses, regularity};
 use equipoise_physics::scene::Scene;
 
 use crate::api::prelude::*;
-use crate::http::request::reader::LARGEST_EXACT;
 
 /// Distance of the rotation number from the resonances 1/3 and 1/4, in turns per bounce, within which the answer names them.
 const NEAR: f64 = 0.02;
@@ -173,10 +172,8 @@ impl Lyapunov {
         }
     }
 
-    fn of_swing(Swing { form, amplitude, .. }: &Swing, rotation: f64) -> Self {
-        let coefficient = form.growth;
-        let contacts = 0.5 / (coefficient * amplitude * amplitude);
-        let escape_bounces = (coefficient > 0.0 && contacts <= LARGEST_EXACT as f64).then_some(contacts as u64);
+    fn of_swing(swing: &Swing, rotation: f64) -> Self {
+        let (coefficient, amplitude) = (swing.form.growth, swing.amplitude);
         let kind = match coefficient {
             growth if growth > 0.0 => "repelling",
             growth if growth < 0.0 => "attracting",
@@ -193,7 +190,7 @@ impl Lyapunov {
                  holds"
             );
         }
-        Self { coefficient, kind, escape_bounces, detail }
+        Self { coefficient, kind, escape_bounces: swing.escape_bounces().map(|bounces| bounces as u64), detail }
     }
 }
 

@@ -381,11 +381,16 @@ fn course(swing: &Swing, run: &NonlinearRun) -> String {
         format!("to second order a swing of {amplitude} rad, as here, changes a kept quantity by {shift} a bounce");
     let course = match form.course() {
         Course::Circles => "to third order a swing neither grows nor dies out".to_owned(),
-        Course::Grows => format!(
-            "to third order the amplitude obeys dA/dn = ℓA³ with ℓ = {growth} per bounce and rad², so a swing of {amplitude} rad, as here, grows, and \
-             leaves upright after about {} bounces",
-            (0.5 / (growth * amplitude * amplitude)).ceil()
-        ),
+        Course::Grows => {
+            let grows = match swing.escape_bounces() {
+                Some(bounces) => format!(
+                    "so a swing of {amplitude} rad, as here, grows, and leaves upright after about {} bounces",
+                    bounces.ceil()
+                ),
+                None => "so every swing grows, however small; this release has none".to_owned(),
+            };
+            format!("to third order the amplitude obeys dA/dn = ℓA³ with ℓ = {growth} per bounce and rad², {grows}")
+        }
         Course::DiesOut => {
             let basin =
                 if run.ending == Ending::Completed { "" } else { ", though not from this start, outside the basin" };
@@ -461,7 +466,7 @@ pub(super) struct SwingPumpAnswer {
     distance: f64,
     /// Mean change of the energy per bounce and unit mass, m²/s².
     energy: f64,
-    /// Number of bounces until the height is critical, at the present rate. Null if the height does not grow.
+    /// Number of bounces until the height is critical, at the present rate. Null if the height does not grow, and for a swing of rounding.
     critical_bounces: Option<u64>,
 }
 
