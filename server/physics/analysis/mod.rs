@@ -20,7 +20,7 @@ pub mod periodic_orbits;
 pub mod regularity;
 pub mod repeating;
 pub mod return_map;
-mod root;
+pub(crate) mod root;
 pub mod small_deviations;
 pub mod swing;
 pub mod verdict;

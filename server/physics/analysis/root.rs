@@ -30,7 +30,7 @@ impl<T> Bracket<T> {
 
 /// Root of a function between two arguments, given with its values of different signs there, and the last step to it (T. R. Chandrupatla 1997).
 /// Values up to `rounding` count as 0. The search ends where the function has no value.
-pub(super) fn root<E>(
+pub(crate) fn root<E>(
     [mut a, mut b]: [(f64, f64); 2],
     rounding: f64,
     mut function: impl FnMut(f64) -> Result<Option<f64>, E>,

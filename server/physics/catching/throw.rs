@@ -2,21 +2,20 @@
 //!
 //! Without friction the tilt and the speed of the table follow in closed form. With friction a search finds them on the exact strike: for
 //! each tilt, one speed of the table gives the vertical velocity ẏ⁺, and the tilts are looked through from level to both sides until the
-//! spin θ̇⁺ changes sides of the wanted one, so that of several tilts the least is found. Both searches are Newton's with halving, on the
-//! exact strike in dual numbers. Either way the throw that is returned is the exact strike and the exact flight of that table, with what
+//! spin θ̇⁺ changes sides of the wanted one, so that of several tilts the least is found. Either way the throw that is returned is the exact strike and the exact flight of that table, with what
 //! they miss of the target.
 
+use crate::analysis::root::root;
 use crate::catching::aim::{Aim, rise_before};
 use crate::map::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
 use crate::map::flight::{Decay, Flight};
 use crate::map::strike::{PlannedTableMotion, Rod, State, Strike};
 use crate::map::table::actuator_load::{ActuatorLoad, LimitViolation, Pose};
-use crate::numbers::dual::Dual;
-use crate::numbers::number::Arithmetic;
 use crate::numbers::trig;
 use crate::run::lasting_contact::moving_rate;
 use crate::run::rules::{Rules, SPEED_LIMIT};
 use crate::scene::Scene;
+use std::convert::Infallible;
 use std::f64::consts::FRAC_PI_2;
 use thiserror::Error;
 
@@ -231,9 +230,8 @@ fn plan(
     let Some(friction) = body.rough() else {
         return Ok((wanted, 0, frictionless_motion(body, &coming.state, &wanted)));
     };
-    let number = Derived::from_f64;
-    let lifted = PreImpact::at(coming.n, number(coming.x), coming.state.map(number));
-    let mut search = Search { body: body.map(number), coming: lifted, wanted, steps: 0 };
+    let coming = PreImpact::at(coming.n, coming.x, coming.state);
+    let mut search = Search { body, coming, wanted, steps: 0 };
     let found = search.least_tilt().map_err(|reach| {
         let angle = |spin: f64| coming.state.theta + spin * wanted.turning;
         let reach = reach.map(|(least, most)| (angle(least), angle(most)));
@@ -265,21 +263,16 @@ fn apex(body: &Body, from: f64, x: f64, strike: &Strike) -> Apex {
 /// Number of tilts that are tried on each side.
 const TILTS: u32 = 96;
 
-/// Largest number of steps of one root, and of doublings of a speed.
-const MAX_STEPS: u32 = 128;
+/// Largest number of doublings of a speed.
+const MOST_DOUBLINGS: u32 = 128;
 
 /// Largest error of a spin that counts as found, as a share of the spins involved.
 const FOUND: f64 = 1e-10;
 
-type ValueAndSlope = (f64, f64);
-
-/// By tilt and approach, the first two directions: that many more cost less than a kind of number of its own.
-type Derived = Dual<5>;
-
 /// Search for the strike that gives the wanted velocities with the least tilt.
-struct Search {
-    body: Body<Derived>,
-    coming: PreImpact<Derived>,
+struct Search<'a> {
+    body: &'a Body,
+    coming: PreImpact,
     wanted: WantedVelocities,
     steps: u32,
 }
@@ -292,11 +285,9 @@ struct Candidate {
     approach: f64,
     /// θ̇⁺ less the wanted one, rad/s.
     miss: f64,
-    /// Derivative by α.
-    slope: f64,
 }
 
-impl Search {
+impl Search<'_> {
     /// The strike with the least tilt. Fails with the least and largest spin reached, if any tilt gives the rise.
     fn least_tilt(&mut self) -> Result<Candidate, Option<(f64, f64)>> {
         let level = self.candidate(0.0);
@@ -318,36 +309,32 @@ impl Search {
         Err(least.zip(spins.into_iter().reduce(f64::max)))
     }
 
-    /// Vertical velocity and spin after a strike, differentiated by tilt and approach.
-    fn strike(&mut self, alpha: f64, approach: f64) -> (Derived, Derived) {
+    /// Angle and velocities after a strike.
+    fn strike(&mut self, alpha: f64, approach: f64) -> State {
         self.steps += 1;
-        let aim = Aim::new(&self.body, &self.coming.state, Dual::along(alpha, 0, 1.0));
-        let plan = Some(aim.approaching(Dual::along(approach, 1, 1.0)));
-        let after = self.body.strike(&PreImpact { plan, ..self.coming }).after;
-        (after.y_dot, after.theta_dot)
+        let plan = Some(Aim::new(self.body, &self.coming.state, alpha).approaching(approach));
+        self.body.strike(&PreImpact { plan, ..self.coming }).after
     }
 
     /// The strike at a tilt that gives the rise; `None` if no speed does.
     fn candidate(&mut self, alpha: f64) -> Option<Candidate> {
-        let WantedVelocities { rise: wanted, spin: wanted_spin, .. } = self.wanted;
-        let mut fast = wanted - self.coming.state.y_dot.value;
-        let mut doublings = 0;
-        while self.strike(alpha, fast).0.value < wanted {
-            fast *= 2.0;
-            doublings += 1;
-            if doublings == MAX_STEPS || !fast.is_finite() {
-                return None;
+        let WantedVelocities { rise, spin, .. } = self.wanted;
+        let missing = self.coming.state.y_dot - rise;
+        let mut fast = -missing;
+        let mut missed = self.strike(alpha, fast).y_dot - rise;
+        for _ in 0..MOST_DOUBLINGS {
+            if missed >= 0.0 || !fast.is_finite() {
+                break;
             }
+            fast *= 2.0;
+            missed = self.strike(alpha, fast).y_dot - rise;
         }
-        let approach = root_between(0.0, fast, |approach| {
-            let (rise, _) = self.strike(alpha, approach);
-            Some((rise.value - wanted, rise.partials[1]))
-        })?;
-        let (rise, spin) = self.strike(alpha, approach);
-        // The approach follows the tilt so that the rise stays.
-        let follow = rise.partials[0] / rise.partials[1];
-        let slope = spin.partials[0] - spin.partials[1] * follow;
-        Some(Candidate { alpha, approach, miss: spin.value - wanted_spin, slope })
+        if !missed.ge(&0.0) {
+            return None;
+        }
+        let miss = |approach| Ok::<_, Infallible>(Some(self.strike(alpha, approach).y_dot - rise));
+        let Ok((approach, _)) = root([(fast, missed), (0.0, missing)], 0.0, miss);
+        Some(Candidate { alpha, approach, miss: self.strike(alpha, approach).theta_dot - spin })
     }
 
     /// The strike between two tilts that gives the spin, if that lies between theirs.
@@ -358,38 +345,13 @@ impl Search {
         if (from.miss < 0.0) == (to.miss < 0.0) {
             return None;
         }
-        let (low, high) = if from.miss < 0.0 { (from.alpha, to.alpha) } else { (to.alpha, from.alpha) };
-        let alpha = root_between(low, high, |alpha| {
-            let candidate = self.candidate(alpha)?;
-            Some((candidate.miss, candidate.slope))
-        })?;
+        let miss = |alpha| Ok::<_, Infallible>(self.candidate(alpha).map(|candidate| candidate.miss));
+        let Ok((alpha, _)) = root([(to.alpha, to.miss), (from.alpha, from.miss)], 0.0, miss);
         let WantedVelocities { rise, spin, .. } = self.wanted;
-        let before = self.coming.state.theta_dot.value.abs();
-        let scale = spin.abs() + before + rise / self.body.rod.contact_distance.value;
+        let scale = spin.abs() + self.coming.state.theta_dot.abs() + rise / self.body.rod.contact_distance;
         // A jump of the strike is no root.
         self.candidate(alpha).filter(|candidate| candidate.miss.abs() <= FOUND * scale)
     }
-}
-
-/// Root of a function that is below 0 at `low` and not at `high`, by Newton's steps, or halves where those leave the bracket.
-fn root_between(mut low: f64, mut high: f64, mut function: impl FnMut(f64) -> Option<ValueAndSlope>) -> Option<f64> {
-    let mut at = 0.5 * (low + high);
-    for _ in 0..MAX_STEPS {
-        let (value, slope) = function(at)?;
-        if value < 0.0 {
-            low = at;
-        } else {
-            high = at;
-        }
-        let newton = at - value / slope;
-        let inside = newton > low.min(high) && newton < low.max(high);
-        let next = if inside { newton } else { 0.5 * (low + high) };
-        if next == at || value == 0.0 || (next - at).abs() <= f64::EPSILON * at.abs() {
-            return Some(at);
-        }
-        at = next;
-    }
-    Some(at)
 }
 
 /// Largest tilt of a throw, rad: 80°. A steeper table throws to the side what it should lift, and no rig tilts so far.
