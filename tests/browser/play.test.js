@@ -173,6 +173,16 @@ test('one is the table: what the hand does is a run like any other, and a link o
   const { outcome } = await (await fetch(`${stage.url}v1/trajectories?${query}&bounces=2000`)).json();
   const held = Number(/\d+/.exec(await page.locator('#case-shows').innerText())[0]);
   assert.equal(held, outcome.bounces - 1);
+  // The link still opens the challenge, which begins anew in place of a run that nobody holds.
+  assert.equal(new URL(page.url()).searchParams.get('you'), 'table');
+  await page.click('#again');
+  assert.equal(await page.locator('#you').getAttribute('aria-pressed'), 'true');
+  await reachPhase(page, 'idle');
+  // A story ends the game: no hand tilts its table.
+  await page.locator('#stories button', { hasText: 'Balanced' }).click();
+  assert.equal(await page.locator('#you').getAttribute('aria-pressed'), 'false');
+  await page.mouse.move(x + width * 0.7, y + height / 2);
+  await page.waitForFunction(() => !/you=table|tilt_offset/.test(location.search));
   clean();
 });
 

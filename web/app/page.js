@@ -51,6 +51,8 @@ export class Page extends TypedScene {
   unknown = null;
   /** True while the run has lost the server. */
   away = false;
+  /** Begins the game anew that is on, in place of its run. @type {(() => void) | null} */
+  game = null;
   /** True while the last catch or throw is that of a panel, which tells of problems with it. */
   guidedByPanel = false;
   /** The element that names the scene's case. */
@@ -201,6 +203,7 @@ export class Page extends TypedScene {
   toggle() {
     const { run } = this;
     if (this.timeline?.toggle()) return;
+    if (this.game && run.phase === 'ended') return this.game();
     if (run.phase === 'idle' || run.phase === 'ended') {
       this.history?.record('the release');
       this.start();
@@ -219,6 +222,7 @@ export class Page extends TypedScene {
   restart() {
     const { run } = this;
     if (run.phase === 'idle') return;
+    if (this.game) return this.game();
     this.history?.record('the restart');
     this.timeline?.toNow();
     if (!run.active || this.unplayed.length > 0) this.start();

@@ -1,5 +1,6 @@
 // You are the table: the pointer tilts it, and the run keeps what the hand did as any other change.
 
+import { differences } from '../api/scene-fields.js';
 import { present } from '../app/scenes.js';
 import { byId, h } from '../dom/elements.js';
 
@@ -23,6 +24,8 @@ export function bringHand(page) {
   const button = h('button', { type: 'button', id: 'you', 'aria-pressed': 'false' }, 'You are the table');
   /** True while the hand holds the table. */
   let holds = false;
+  /** The scene of the game. @type {Scene} */
+  let scene = {};
   /** The speed before. */
   let speed = 1;
   /** The bounce for which a tilt was sent last. */
@@ -37,10 +40,17 @@ export function bringHand(page) {
     for (const hint of document.querySelectorAll('.intro .how')) hint.toggleAttribute('hidden', wanted);
   };
 
+  /** In place of the words on the scene, until it is another one. @param {string} words */
+  const say = (words) => {
+    const shows = byId('case-shows');
+    shows.textContent = words;
+    delete shows.dataset.words;
+  };
+
   const begin = () => {
     const one = page.cases.find(({ name }) => name === CASE);
     if (!one) return;
-    const scene = structuredClone(one.scene);
+    scene = structuredClone(one.scene);
     scene.table = { ...scene.table, tilt_gain: 0, errors: { tilt_offset: 0 } };
     scene.release = { ...scene.release, theta: ANGLE };
     scene.topple_angle = FALLEN;
@@ -48,24 +58,30 @@ export function bringHand(page) {
     page.speed = SPEED;
     page.history?.record('the table in your hand');
     page.chosen = null;
+    page.game = null;
     run.reset();
     present(page, scene);
+    sent = 0;
+    page.game = begin;
     hold(true);
+    follow();
     const how = matchMedia('(pointer: coarse)').matches
       ? 'Slide a finger over the scene'
       : 'Move the pointer over the scene, or press ← and →';
-    byId('case-shows').textContent = `${how}: the table tilts. Keep the rod up.`;
+    say(`${how}: the table tilts. Keep the rod up.`);
     byId('scene-card').scrollIntoView({ block: 'nearest' });
   };
 
   const end = () => {
     hold(false);
     page.speed = speed;
-    if (run.phase !== 'ended') return;
+    if (run.phase !== 'ended') {
+      page.game = null;
+      return;
+    }
     const held = Math.max(0, (run.outcome?.bounces ?? 0) - 1);
     const gain = page.cases.find(({ name }) => name === CASE)?.scene.table?.tilt_gain;
-    byId('case-shows').textContent =
-      `You held ${held} ${held === 1 ? 'bounce' : 'bounces'}. A table with κ = ${gain} holds 2000.`;
+    say(`You held ${held} ${held === 1 ? 'bounce' : 'bounces'}. A table with κ = ${gain} holds 2000.`);
   };
 
   /** Sends the tilt of each bounce just before it. */
@@ -83,13 +99,17 @@ export function bringHand(page) {
   /** @param {number} wanted rad */
   const tilt = (wanted) => {
     // The first move lets the body go.
-    if (run.phase === 'idle') {
-      sent = 0;
-      page.start();
-      follow();
-    }
+    if (run.phase === 'idle') page.start();
     view.tilt = Math.min(WIDEST, Math.max(-WIDEST, Number(wanted.toFixed(3))));
     view.redraw();
+  };
+
+  /** Ends the game where the page shows another scene. */
+  const leave = () => {
+    const others = () => differences(page.fields, page.typed ?? {}, scene).some(({ field }) => field !== TILT);
+    if (!page.game || (page.chosen === null && !others())) return;
+    page.game = null;
+    if (holds) end();
   };
 
   button.addEventListener('click', () => (holds ? end() : begin()));
@@ -110,13 +130,14 @@ export function bringHand(page) {
     changed: () => {
       if (holds && run.phase === 'ended') end();
     },
+    cleared: leave,
     struck: () => {
       if (holds) page.verdict?.plays(`Held ${run.impacts.last?.n ?? 0}`);
     },
   });
   return {
     // The address opens the challenge.
-    query: () => new URLSearchParams(holds ? [['you', 'table']] : []),
+    query: () => new URLSearchParams(page.game ? [['you', 'table']] : []),
     restore: (link) => {
       if (link.get('you') === 'table' && !holds) begin();
       return [];
