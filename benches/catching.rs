@@ -54,5 +54,5 @@ fn one_plan(bencher: Bencher, (strikes, ratio): (u32, f64)) {
 fn one_throw(bencher: Bencher, friction: f64) {
     let scene = scene(friction);
     let coming = PreImpact::at(1, 0.0, State { theta: 0.1, x_dot: 0.0, y_dot: -1.5, theta_dot: 0.0 });
-    bencher.bench(|| throw(black_box(&scene), &coming, &ThrowTarget { height: 0.5, theta: 0.5 }));
+    bencher.bench(|| throw(black_box(&scene), &coming, None, &ThrowTarget { height: 0.5, theta: 0.5 }));
 }

@@ -308,7 +308,7 @@ impl Playback {
         let (coming, t) = (self.coming(), self.orbit.t());
         let Some((mut contact, arrival)) = self.caught.as_mut().and_then(|caught| caught.strike()) else {
             // A catch without strikes and without a hold: the body falls before the table meets it.
-            self.end_hold(coming.n - 1);
+            self.end_hold(coming.n);
             return Ok(Contact { flight_time: None, ..bare_contact(&coming, t) });
         };
         match (kick, contact.strike) {
@@ -390,10 +390,7 @@ impl Playback {
 
     /// The throw of the body from the coming strike.
     fn throw(&self, target: &ThrowTarget) -> Result<Throw, ThrowFailure> {
-        let thrown = throw::throw(&self.scene, &self.coming(), target)?;
-        let load = Pose::of(&thrown.strike).load(self.tracker.last());
-        let violation = self.scene.rules().limits.and_then(|limits| limits.exceeded(&load));
-        violation.map_or(Ok(thrown), |violation| Err(ThrowFailure::BeyondLimits(violation)))
+        throw::throw(&self.scene, &self.coming(), self.tracker.last(), target)
     }
 
     /// The throw of the body, as strike `n`, from the table that holds it.

@@ -139,7 +139,7 @@ test('of questions in quick succession only the last is answered', async () => {
   });
   await whole(page);
   assert.match(await page.locator('#map-links a').first().getAttribute('href'), /bounces=400/);
-  assert.match((await readout(page)).replaceAll('\u00a0', ' '), /survived 400 bounces/);
+  assert.match((await readout(page)).replaceAll('\u00a0', ' '), /survives here/);
   clean();
 });
 

@@ -100,7 +100,10 @@ async function showThisRun(page) {
   }
   const [fact, after] = page.thisRun();
   if (run.phase === 'ended') tell(fact + after);
-  page.verdict?.ended(run.phase === 'ended' ? run.fate : null, fact);
+  // A body that the table has caught rests there, whatever its setting does.
+  const caught = Object.keys(run.interventions.at(-1)?.guide ?? {}).some((name) => name.startsWith('catch.'));
+  if (run.active && run.holds && caught) page.verdict?.ended('kept', 'Caught: held on the table');
+  else page.verdict?.ended(run.phase === 'ended' ? run.fate : null, fact);
 }
 
 /** The run is refused for good. @param {Page} page @param {Problem} problem */

@@ -25,6 +25,7 @@ export class RunDrawing {
   /** True while the body is on its way to the ground. */
   falls = false;
   #written_ms = -Infinity;
+  #spoken_ms = -Infinity;
   /** The end of the picture with the numbers of the newest strike. @type {'left' | 'right'} */
   #numbersAt = 'right';
 
@@ -126,19 +127,19 @@ export class RunDrawing {
   #say(now_ms, t, pose, impact) {
     const { run, readout, layers } = this.#view;
     const running = run.pace > 0;
-    const since_ms = now_ms - this.#written_ms;
-    if (running && since_ms < WRITTEN_MS) return;
+    if (running && now_ms - this.#written_ms < WRITTEN_MS) return;
+    this.#written_ms = now_ms;
     // More digits are legible while the picture stands still.
     const [seconds, rest] = running ? [2, 3] : [4, 5];
     const n = impact?.n ?? 0;
     readout.textContent = unbroken(
       `t ${fixed(t, seconds)} s   bounce ${n}   θ ${fixedQuantity(pose.theta, 'rad', rest)}   x ${fixed(pose.x, rest)} m   y ${fixed(pose.y, rest)} m${contactWords(impact, rest)}`,
     );
-    if (!running || since_ms > SPOKEN_MS) {
+    if (!running || now_ms - this.#spoken_ms > SPOKEN_MS) {
+      this.#spoken_ms = now_ms;
       const contact = contactWords(impact, 3).replace(/ {3}/g, ', ');
       layers[0].canvas.ariaLabel = `The rod and the table after bounce ${n}: tilted by ${fixedQuantity(pose.theta, 'rad', 2)} at x = ${fixed(pose.x, 2)} m${contact}`;
     }
-    this.#written_ms = now_ms;
   }
 
   /** Draws the path of the centre of gravity on the last flights. @param {Stage} stage @param {Scene} scene @param {number | null} place @param {number} t */

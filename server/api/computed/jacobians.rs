@@ -260,6 +260,7 @@ impl JacobianAnswer {
         })?;
         let Linearization {
             matrix,
+            determinant,
             order: state_order,
             flight_time,
             contact_speed: contact_velocity,
@@ -354,7 +355,7 @@ impl JacobianAnswer {
             },
             period,
             state_order,
-            determinant: matrix.determinant(),
+            determinant,
             matrix: rows(&matrix),
             eigenvalues: eigenvalues.into_iter().map(Eigenvalue::from).collect(),
             residue,
@@ -412,7 +413,7 @@ fn place(scene: &Scene, at: At, go_on: impl FnMut() -> bool) -> Result<(f64, Sta
             Ok((x, Body::point_state(x_dot, y_dot)))
         }
         At::Impact(impact) => {
-            let (_, before) = run_to_impact(scene, impact, "/at/impact", go_on)?;
+            let before = run_to_impact(scene, impact, "/at/impact", go_on)?.coming;
             Ok((before.x, before.state))
         }
     }

@@ -3,6 +3,7 @@
 use equipoise_physics::catching::throw::{Apex, Throw, ThrowFailure, ThrowTarget, throw};
 use equipoise_physics::map::body::{NoContact, PreImpact, Release};
 use equipoise_physics::map::strike::State;
+use equipoise_physics::run::orbit::ComingContact;
 use equipoise_physics::scene::{Name, Scene, Value};
 
 use crate::api::computed::catches::request::CatchOptions;
@@ -197,12 +198,12 @@ impl ThrowAnswer {
     /// The reason for which it cannot be thrown there, or cancelled work.
     pub fn compute(request: &ThrowRequest, go_on: &mut dyn FnMut() -> bool) -> Result<Self, Refusal> {
         let ThrowRequest { ref scene, apex, impact, state, ref catch } = *request;
-        let (t, coming) = match impact {
-            None => (0.0, PreImpact::at(1, state.x, state.state())),
+        let ComingContact { t, coming, before } = match impact {
+            None => ComingContact { t: 0.0, coming: PreImpact::at(1, state.x, state.state()), before: None },
             Some(impact) => run_to_impact(scene, impact, "/impact", &mut *go_on)?,
         };
-        let thrown = throw(scene, &coming, &apex).map_err(|why| refusal(why, impact))?;
-        let released = released(scene, &thrown)?;
+        let thrown = throw(scene, &coming, before, &apex).map_err(|why| refusal(why, impact))?;
+        let released = released(scene, &thrown, &coming)?;
         let catch = catch.as_ref().map(|options| CatchAnswer::compute(&released, options, go_on)).transpose()?;
         let Throw { motion, strike, apex, residual, iterations, load, release, landing } = thrown;
         let Apex { t: rise, x, y, theta } = apex;
@@ -241,7 +242,7 @@ impl ThrowAnswer {
 }
 
 /// The scene with the flight of the throw as its release.
-fn released(scene: &Scene, thrown: &Throw) -> Result<Scene, Refusal> {
+fn released(scene: &Scene, thrown: &Throw, from: &PreImpact) -> Result<Scene, Refusal> {
     let Release { x, height, state: State { theta, x_dot, y_dot, theta_dot } } = thrown.release;
     let mut draft = scene.draft();
     for (name, value) in [
@@ -259,6 +260,14 @@ fn released(scene: &Scene, thrown: &Throw) -> Result<Scene, Refusal> {
         }
     }
     draft.build().map_err(|errors| {
+        if from.clearance < 0.0 {
+            let (n, below) = (from.n, -from.clearance);
+            let detail = format!(
+                "at impact {n} the table strikes late, with the contact point {below} m below y = 0, and no scene is released there; throw at \
+                 another impact, or leave noise.timing_sd out"
+            );
+            return Refusal::At("/impact", detail);
+        }
         let details: Vec<String> = explain(errors).into_iter().map(|error| error.detail).collect();
         Refusal::At("/apex", details.join("; "))
     })

@@ -6,8 +6,9 @@ use std::ops::Range;
 use equipoise_physics::control::lqr::{DEFAULT_INPUT_WEIGHT, DEFAULT_STATE_WEIGHTS};
 use equipoise_physics::map::body::PreImpact;
 use equipoise_physics::map::strike::State;
+use equipoise_physics::map::table::actuator_load::Pose;
 use equipoise_physics::run::cancellation::CHECK_INTERVAL;
-use equipoise_physics::run::orbit::run;
+use equipoise_physics::run::orbit::{ComingContact, run};
 use equipoise_physics::scene::Scene;
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
@@ -19,18 +20,20 @@ use crate::http::request::fields::{
 };
 use crate::request_fields;
 
-/// Runs a scene up to contact `impact`, which a request names at `pointer`, and returns its time, s, and the body just before it.
+/// Runs a scene up to contact `impact`, which a request names at `pointer`.
 pub(crate) fn run_to_impact(
     scene: &Scene,
     impact: u64,
     pointer: &'static str,
     mut go_on: impl FnMut() -> bool,
-) -> Result<(f64, PreImpact), Refusal> {
+) -> Result<ComingContact, Refusal> {
     let mut orbit = scene.orbit().map_err(|_| (pointer, "the run has no contact".to_owned()))?;
-    let mut last = (0.0, PreImpact::at(0, orbit.x(), *orbit.state()));
+    let mut last = ComingContact { t: 0.0, coming: PreImpact::at(0, orbit.x(), *orbit.state()), before: None };
+    let mut before = None;
     let ending = run(&mut orbit, impact, |contact| {
-        let before = PreImpact { clearance: contact.clearance, ..PreImpact::at(contact.n, contact.x, contact.state) };
-        last = (contact.t, before);
+        let coming = PreImpact { clearance: contact.clearance, ..PreImpact::at(contact.n, contact.x, contact.state) };
+        last = ComingContact { t: contact.t, coming, before };
+        before = contact.strike.as_ref().map(Pose::of).zip(contact.flight_time);
         !contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
     });
     let ending = ending.ok_or(Refusal::Cancelled)?;

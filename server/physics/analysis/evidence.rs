@@ -4,10 +4,10 @@ use crate::analysis::boundary::boundary_coefficient;
 use crate::analysis::jacobian::modulus;
 use crate::analysis::losses::{StabilityLoss, losses};
 use crate::analysis::nonlinear_run::{NonlinearRun, run_nonlinear};
-use crate::analysis::repeating::{self, NoRepeatingBounce, RepeatingBounce, energy_gradient, keeps_energy};
-use crate::analysis::return_map::{ReturnMap, Vector, X, Y_DOT};
+use crate::analysis::repeating::{self, NoRepeatingBounce, RepeatingBounce, energy_gradient, keeps_energy, scales};
+use crate::analysis::return_map::{ReturnMap, Vector, X, X_DOT, Y_DOT};
 use crate::analysis::small_deviations::{Motion, SmallDeviations, small_deviations};
-use crate::analysis::swing::{NoSwingForm, Resonance, SwingForm};
+use crate::analysis::swing::{NoSwingForm, Resonance, SwingForm, amplitude_of, eigenvectors};
 use crate::analysis::verdict::{DecidedBy, Verdict};
 use crate::map::strike::State;
 use crate::run::cancellation::CHECK_INTERVAL;
@@ -15,7 +15,7 @@ use crate::run::ending::{Ending, EndingKind};
 use crate::run::orbit::{Orbit, run};
 use crate::scene::Scene;
 use crate::surveys::ensemble::{Ensemble, wilson_interval};
-use nalgebra::Complex;
+use nalgebra::{Complex, DVector};
 
 /// Swing of the run that decides where the first orders of the map are silent, for a release without one, rad.
 pub const SMALL_SWING: f64 = 1e-3;
@@ -29,6 +29,15 @@ const LARGEST_CHANGE: f64 = 0.5;
 /// Times the swing of a release beyond which a swing has widened, whatever its normal form says.
 const WIDENED: f64 = 4.0;
 
+/// Growth over the second half of that run from which on nothing bounds a deviation yet.
+const STILL_GROWS: f64 = 1.5;
+
+/// Part of a deviation that grows to first order, in parts of the bounce speed, up to which a run stays beside it; one that begins so far off follows.
+const SMALL_GROWING: f64 = 1e-3;
+
+/// Share of the bounce speed up to which a body that still bounces is at rest.
+const AT_REST: f64 = 1e-3;
+
 /// Bounces of that run. Chaotic swings that stay bounded for a while have left by then.
 pub const SMALL_RUN: u64 = 20_000;
 
@@ -37,6 +46,9 @@ const MOVED: f64 = 5_000.0;
 
 /// Way, m, up to which such a drift is rounding.
 const LEAST_WAY: f64 = 1e-9;
+
+/// Share of a drift up to which two are the same.
+const SAME_DRIFT: f64 = 1e-6;
 
 /// Bounces up to which a drift that takes the body off its table counts.
 const LEAVES: f64 = 1e6;
@@ -61,6 +73,8 @@ pub struct SmallRun {
     pub survived: bool,
     /// Largest |θ| over the first and over the second half of the bounces asked for, rad.
     pub halves: [f64; 2],
+    /// The same of the part of the deviation that grows to first order, in parts of the bounce speed; 0 where none does.
+    pub growing: [f64; 2],
 }
 
 impl SmallRun {
@@ -69,11 +83,12 @@ impl SmallRun {
         self.halves[0].max(self.halves[1])
     }
 
-    /// Tells whether the swing still grew in the second half, by more than the root of what a factor a bounce makes of a small one: nothing bounds it
-    /// yet.
+    /// Tells whether the swing, or what grows to first order, still grew in the second half: by half, or by the root of what a factor a bounce makes
+    /// of a small one if that is less. Nothing bounds it yet.
     pub fn grew(&self, factor: f64) -> bool {
-        let [early, late] = self.halves;
-        late > early * libm::pow(factor, 0.25 * self.impacts as f64)
+        let least = libm::pow(factor, 0.25 * self.impacts as f64);
+        let grows = |[early, late]: [f64; 2], least: f64| late > early * least;
+        grows(self.halves, least) || grows(self.growing, least.min(STILL_GROWS))
     }
 }
 
@@ -86,6 +101,8 @@ pub struct Balance {
     pub leaves: Option<u64>,
     /// Normal form of the swing, if it circles; `None` also for a strike that keeps the energy of a frictionless rod, whose swings circle.
     pub swing: Option<Result<Swing, NoSwingForm>>,
+    /// |w| of the release, rad, where small deviations circle.
+    pub amplitude: Option<f64>,
     /// The strong resonance of the release, where its normal form does not tell whether the swing leaves: the run does.
     pub resonance: Option<Resonance>,
     /// C at κ_c.
@@ -206,6 +223,8 @@ pub enum Course {
     Settles,
     /// It moves a kept quantity, bounce after bounce, which does not act back.
     Shifts,
+    /// It turns with a quarter turn, and grows in third order ([`SwingForm::locks`]).
+    Locks,
 }
 
 impl SwingForm {
@@ -271,8 +290,12 @@ pub fn evidence(scene: &Scene, most: u64, go_on: &mut impl FnMut() -> bool) -> O
 /// Bounces after which a drift of the release takes the body off the table of a scene, if it does within [`LEAVES`].
 fn leaves(scene: &Scene, place: f64, small: &SmallDeviations) -> Option<u64> {
     let drift = small.lasting_drift();
-    let way = drift.abs() * small.fixed_point.flight_time;
-    let bounces = (scene.rules().half_length - place * drift.signum()) / way;
+    // The way of the bounce itself where it has this drift: strikes may change ẋ.
+    let of_map = small.found.as_ref().filter(|bounce| (bounce.at[X_DOT] - drift).abs() <= SAME_DRIFT * drift.abs());
+    let of_map =
+        of_map.and_then(|bounce| Some((bounce.map.image(&bounce.at)?[X] - bounce.at[X]) / bounce.map.period as f64));
+    let way = of_map.unwrap_or(drift * small.fixed_point.flight_time);
+    let bounces = (scene.rules().half_length - place * way.signum()) / way.abs();
     // A cast keeps to the range of the type.
     (small.drifts && bounces <= LEAVES).then_some(bounces as u64)
 }
@@ -280,7 +303,7 @@ fn leaves(scene: &Scene, place: f64, small: &SmallDeviations) -> Option<u64> {
 impl Balance {
     fn new(scene: &Scene, orbit: &Orbit, small: SmallDeviations) -> Self {
         let model = scene.model();
-        let (mut swing, mut resonance) = (None, None);
+        let (mut swing, mut resonance, mut amplitude) = (None, None, None);
         if let Motion::Circles(eigenvalue) = small.motion {
             let map = ReturnMap::new(&model, 1);
             let at = map.vector(&small.state(), small.fixed_point.x);
@@ -288,7 +311,9 @@ impl Balance {
             if small.found.is_none() && keeps_energy(&map, &at) {
                 let bounce = map.derivative(&at).map(|here| RepeatingBounce::bare(&map, at, here.matrix));
                 let release = map.vector(orbit.state(), orbit.x());
-                resonance = bounce.and_then(|bounce| Resonance::about(&bounce, eigenvalue, &release));
+                amplitude = bounce.as_ref().and_then(|bounce| amplitude_of(bounce, eigenvalue, &release));
+                resonance =
+                    bounce.zip(amplitude).and_then(|(bounce, size)| Resonance::about(&bounce, eigenvalue, size));
             } else {
                 let found = small.on_map(scene).map_err(|_| NoSwingForm::NoDerivative).and_then(|bounce| {
                     let release = bounce.map.planned(&bounce.map.vector(orbit.state(), orbit.x()));
@@ -296,6 +321,7 @@ impl Balance {
                     Swing::new(&bounce, eigenvalue, &release, moved)
                 });
                 resonance = found.as_ref().ok().and_then(|swing| swing.form.resonance(swing.amplitude));
+                amplitude = found.as_ref().ok().map(|swing| swing.amplitude);
                 swing = Some(found);
             }
         }
@@ -303,7 +329,7 @@ impl Balance {
         let (losses, notes) = losses(scene, &small, boundary);
         let boundary = boundary.or_else(|| losses.iter().find_map(StabilityLoss::boundary));
         let leaves = leaves(scene, orbit.x(), &small);
-        Self { small, leaves, swing, resonance, boundary, losses, notes, small_run: None }
+        Self { small, leaves, swing, amplitude, resonance, boundary, losses, notes, small_run: None }
     }
 
     /// Tells whether the swing of the release is small enough for its normal form to tell whether it leaves.
@@ -317,8 +343,9 @@ impl Balance {
     }
 
     /// Tells whether the run that decides ended with a swing that is far wider than that of its release.
-    fn widened(&self, swing: &Swing) -> bool {
-        self.small_run.is_some_and(|run| run.is_own && run.halves[1] > WIDENED * swing.amplitude)
+    fn widened(&self) -> bool {
+        let run = self.small_run.filter(|run| run.is_own);
+        run.zip(self.amplitude).is_some_and(|(run, amplitude)| run.halves[1] > WIDENED * amplitude)
     }
 
     fn left(&self) -> bool {
@@ -336,6 +363,10 @@ impl Balance {
             (Motion::Circles(_), swing) if left && (swing.is_none() || !self.form_tells()) => {
                 (Verdict::Unstable, DecidedBy::Nonlinear)
             }
+            // Near a strong resonance it may do what its normal form does not tell.
+            (Motion::Circles(_), None | Some(Ok(Swing { farther: None, .. }))) if self.widened() => {
+                (Verdict::WeaklyUnstable, DecidedBy::Nonlinear)
+            }
             (Motion::Circles(_), None) => (Verdict::Elliptic, DecidedBy::Linear),
             // Without a normal form the run from a small start decides.
             (Motion::Circles(_), Some(Err(_))) => {
@@ -352,13 +383,11 @@ impl Balance {
                 (Verdict::WeaklyAttracting, DecidedBy::Nonlinear)
             }
             (Motion::Circles(_), Some(Ok(swing))) => match swing.course() {
-                Course::Grows | Course::Pumps | Course::Shifts => (Verdict::WeaklyUnstable, DecidedBy::Lyapunov),
+                Course::Grows | Course::Pumps | Course::Shifts | Course::Locks => {
+                    (Verdict::WeaklyUnstable, DecidedBy::Lyapunov)
+                }
                 _ if left => (Verdict::Unstable, DecidedBy::Nonlinear),
                 Course::Circles => (Verdict::Elliptic, DecidedBy::Linear),
-                // Near a strong resonance it may do what its normal form does not tell.
-                Course::DiesOut | Course::Settles if self.widened(swing) => {
-                    (Verdict::WeaklyUnstable, DecidedBy::Nonlinear)
-                }
                 Course::DiesOut | Course::Settles => (Verdict::WeaklyAttracting, DecidedBy::Lyapunov),
             },
         }
@@ -434,37 +463,100 @@ impl Swing {
         self.of_speed > LARGEST_CHANGE
     }
 
-    /// The course of the swing.
+    /// The course of the swing, where a drift takes it.
     pub fn course(&self) -> Course {
-        self.farther.unwrap_or_else(|| self.form.course())
+        self.farther.unwrap_or_else(|| self.course_here())
+    }
+
+    /// The course of the swing where it is.
+    pub fn course_here(&self) -> Course {
+        let is_alone = self.shifts.iter().all(|shift| *shift == 0.0);
+        if is_alone && self.form.locks(self.amplitude) { Course::Locks } else { self.form.course() }
     }
 }
 
-/// The run of a release on which its own verdict rests where the first orders are silent; that of a small swing for a release that is at the
-/// bounce itself. `None` once `go_on` returned false.
+/// The part of a deviation that grows to first order: p·(s − s*) with the left eigenvector p of the largest eigenvalue.
+struct GrowingPart {
+    bounce: RepeatingBounce,
+    /// Right and left eigenvector. |p·(s − s*)| is in parts of the bounce speed.
+    right: DVector<Complex<f64>>,
+    left: DVector<Complex<f64>>,
+}
+
+impl GrowingPart {
+    fn of(scene: &Scene, small: &SmallDeviations) -> Option<Self> {
+        let Motion::Grows(_) = small.motion else { return None };
+        let bounce = small.on_map(&scene.with_tilt_law()).ok().filter(|bounce| !bounce.map.plans)?;
+        let (right, left) = eigenvectors(&bounce.matrix, *bounce.eigenvalues.first()?)?;
+        let speed = bounce.at[Y_DOT].abs();
+        let size = right.map(modulus).component_mul(&scales(&bounce.map, speed)).amax();
+        let unit = Complex::new(size / speed, 0.0);
+        Some(Self { right: right / unit, left: left * unit, bounce })
+    }
+
+    fn size(&self, state: &State, x: f64) -> f64 {
+        let RepeatingBounce { map, at, .. } = &self.bounce;
+        let off = map.reduced(&map.vector(state, x)) - map.reduced(at);
+        modulus(self.left.iter().zip(off.iter()).map(|(p, off)| p * *off).sum())
+    }
+
+    /// A state and a place, moved along the right eigenvector.
+    fn moved(&self, (state, x): (State, f64)) -> (State, f64) {
+        let map = &self.bounce.map;
+        let moved = map.moved(&map.vector(&state, x), &self.right.map(|part| part.re * SMALL_GROWING));
+        (map.state(&moved), if map.has_place { moved[X] } else { x })
+    }
+}
+
+/// The run of a release on which its own verdict rests where the first orders are silent; that of a small deviation for a release that is at the
+/// bounce itself, or stays beside what grows. `None` once `go_on` returned false.
 fn small_run(scene: &Scene, small: &SmallDeviations, most: u64, go_on: &mut impl FnMut() -> bool) -> Option<SmallRun> {
+    let growing = GrowingPart::of(scene, small);
     let released = scene.orbit().ok().filter(|orbit| {
         let State { theta, theta_dot, .. } = *orbit.state();
         let swings = theta.abs().max((theta_dot * small.fixed_point.flight_time).abs()) > LEAST_SWING;
         // A double eigenvalue 1 tells itself by a spin only.
-        swings && !matches!(small.motion, Motion::Silent(value) if value > 0.0)
+        let tells = swings && !matches!(small.motion, Motion::Silent(value) if value > 0.0);
+        tells || growing.as_ref().is_some_and(|part| part.size(orbit.state(), orbit.x()) > LEAST_SWING)
     });
-    let mut orbit = released.unwrap_or_else(|| {
-        let mut start = small.state();
-        start.theta += SMALL_SWING;
-        start.theta_dot += 0.5 * SMALL_SWING / small.fixed_point.flight_time;
-        Orbit::at(scene.running_model(), scene.rules(), start).moved(small.fixed_point.x)
-    });
-    let mut halves = [0.0_f64; 2];
-    let ending = run(&mut orbit, most, |contact| {
-        let half = &mut halves[usize::from(contact.n > most / 2)];
-        *half = half.max(contact.state.theta.abs());
+    let own = released.map(|mut orbit| followed(&mut orbit, true, small, growing.as_ref(), most, go_on));
+    match own {
+        Some(run) if growing.is_none() || run.is_none_or(|run| !run.survived || run.growing[1] > SMALL_GROWING) => run,
+        _ => {
+            let swinging = || {
+                let mut start = small.state();
+                start.theta += SMALL_SWING;
+                start.theta_dot += 0.5 * SMALL_SWING / small.fixed_point.flight_time;
+                (start, small.fixed_point.x)
+            };
+            let start = released.map_or_else(swinging, |orbit| (*orbit.state(), orbit.x()));
+            let (start, x) = growing.as_ref().map_or(start, |part| part.moved(start));
+            let mut orbit = Orbit::at(scene.running_model(), scene.rules(), start).moved(x);
+            followed(&mut orbit, false, small, growing.as_ref(), most, go_on)
+        }
+    }
+}
+
+/// Follows a run for `most` bounces; `None` once `go_on` returned false. One that has come to rest has not survived.
+fn followed(
+    orbit: &mut Orbit,
+    is_own: bool,
+    small: &SmallDeviations,
+    part: Option<&GrowingPart>,
+    most: u64,
+    go_on: &mut impl FnMut() -> bool,
+) -> Option<SmallRun> {
+    let period = part.map_or(1, |part| part.bounce.map.period);
+    let (mut halves, mut growing, mut fastest) = ([0.0_f64; 2], [0.0_f64; 2], [0.0_f64; 2]);
+    let ending = run(orbit, most, |contact| {
+        let half = usize::from(contact.n > most / 2);
+        halves[half] = halves[half].max(contact.state.theta.abs());
+        fastest[half] = fastest[half].max(contact.state.y_dot.abs());
+        if let Some(part) = part.filter(|_| (contact.n - 1).is_multiple_of(period)) {
+            growing[half] = growing[half].max(part.size(&contact.state, contact.x));
+        }
         !contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
     })?;
-    Some(SmallRun {
-        impacts: orbit.contacts(),
-        is_own: released.is_some(),
-        survived: ending == Ending::Completed,
-        halves,
-    })
+    let survived = ending == Ending::Completed && (most < 2 || fastest[1] > AT_REST * small.fixed_point.speed);
+    Some(SmallRun { impacts: orbit.contacts(), is_own, survived, halves, growing })
 }

@@ -22,6 +22,8 @@ pub struct Linearization {
     /// Derivative of the state at the end with respect to the state at the start: 4 × 4, 5 × 5 where it depends on x, for a
     /// point mass 2 × 2, with three more of a planned motion. Components are in m/s, except ρθ and x in m and a planned tilt in rad.
     pub matrix: DMatrix<f64>,
+    /// Determinant of the matrix: the product of those of its bounces, since that of a product of many is rounding.
+    pub determinant: f64,
     /// The state at the end.
     pub end: State,
     /// Length of the flights passed, s.
@@ -81,7 +83,7 @@ pub fn jacobian_at(model: &Body, x: f64, start: &State, period: u64) -> Result<L
         contact_mode: ContactMode::Frictionless,
         matrix: DMatrix::identity(order.len(), order.len()),
     }];
-    let (mut contact_mode, mut is_hurried) = (None, false);
+    let (mut contact_mode, mut is_hurried, mut determinant) = (None, false, 1.0);
     let (mut flight_time, mut contact_speed) = (0.0, f64::NEG_INFINITY);
     for _ in 0..period {
         let contact = orbit.advance();
@@ -89,7 +91,9 @@ pub fn jacobian_at(model: &Body, x: f64, start: &State, period: u64) -> Result<L
             return Err(Box::new(contact));
         };
         contact_mode = contact_mode.or(Some(strike.mode));
-        sides = multiply(&derivatives(model, &lifted, &contact, flight), &sides);
+        let factors = derivatives(model, &lifted, &contact, flight);
+        determinant *= factors[0].matrix.determinant();
+        sides = multiply(&factors, &sides);
         is_hurried |= flight < model.lag;
         flight_time += flight;
         contact_speed = f64::max(contact_speed, model.contact_speed(orbit.state()));
@@ -100,10 +104,20 @@ pub fn jacobian_at(model: &Body, x: f64, start: &State, period: u64) -> Result<L
         (order, sides) = (map.names(), Vec::new());
         let none = || DMatrix::from_element(order.len(), order.len(), f64::NAN);
         matrix = map.derivative(&map.planned(&map.vector(start, x))).map_or_else(none, |found| found.matrix);
+        determinant = matrix.determinant();
     }
     let one_sided = if sides.len() > 1 { sides } else { Vec::new() };
     let contact_mode = contact_mode.unwrap_or(ContactMode::Frictionless);
-    Ok(Linearization { matrix, end: *orbit.state(), flight_time, contact_speed, contact_mode, order, one_sided })
+    Ok(Linearization {
+        matrix,
+        determinant,
+        end: *orbit.state(),
+        flight_time,
+        contact_speed,
+        contact_mode,
+        order,
+        one_sided,
+    })
 }
 
 /// Eigenvalues, largest modulus first.

@@ -193,8 +193,20 @@ impl SceneMap {
         find_planned(map, guess, reference).or_else(|why| {
             find_planned(map, &in_place, reference)
                 .or_else(|_| find_planned(map, &steady(map, in_place), reference))
+                .or_else(|_| match why {
+                    NoRepeatingBounce::NotFound | NoRepeatingBounce::Rests => self.settled().ok_or(why.clone()),
+                    _ => Err(why.clone()),
+                })
                 .map_err(|_| why)
         })
+    }
+
+    /// The bounce to which its run settles, if it does.
+    pub(super) fn settled(&self) -> Option<RepeatingBounce> {
+        let Self { map, reference, guess } = self;
+        let orbit = Orbit::at(map.body, Rules::BARE_MAP, map.state(reference)).moved(reference[X]);
+        let here = settled(map, orbit, &RepeatingBounce::bare(map, *guess, DMatrix::zeros(0, 0)))?;
+        find_planned(map, &here, &here).ok()
     }
 }
 
@@ -240,6 +252,10 @@ fn steady(map: &ReturnMap, upright: Vector) -> Vector {
         if change.abs().max(aside.abs()) <= SETTLED_HEIGHT * speed {
             is_settled = true;
             break;
+        }
+        // A place that is not found yet says nothing about the height.
+        if aside.abs() > SETTLED_HEIGHT * speed {
+            continue;
         }
         // Where the height is left, as one that is too low for the air, the bounce that repeats is farther on.
         let slope = 1.0 - here.matrix[(fall, fall)];
@@ -329,7 +345,7 @@ fn scaled(matrix: &DMatrix<f64>, scale: &DVector<f64>) -> DMatrix<f64> {
 }
 
 /// Scales of the components of a map, so that all are speeds: lengths over the flight time, a tilt times the speed.
-fn scales(map: &ReturnMap, speed: f64) -> DVector<f64> {
+pub(super) fn scales(map: &ReturnMap, speed: f64) -> DVector<f64> {
     let gravity = map.body.rod.gravity;
     let per_flight = gravity / (2.0 * speed);
     let of = [per_flight, 1.0, 1.0, 1.0, per_flight, speed, 1.0, 1.0];
@@ -481,7 +497,11 @@ impl Newton<'_> {
             }
             last = size;
             let fall = map.place_of(Y_DOT).map_or(0.0, |place| change[place].abs() / speed);
-            let share = (LONGEST / fall.max(LONGEST)).min(1.0 / size.max(1.0));
+            // The place may be far off, and what it does is linear in it.
+            let place = map.place_of(X);
+            let beside = change.iter().enumerate().filter(|(index, _)| Some(*index) != place);
+            let turned = beside.fold(0.0_f64, |most, (_, change)| most.max(change.abs())) / speed;
+            let share = (LONGEST / fall.max(LONGEST)).min(1.0 / turned.max(1.0));
             at = map.moved(&at, &change.component_div(&scale).scale(share));
             if at[Y_DOT] >= -AT_REST * first_speed {
                 return Err(NoRepeatingBounce::Rests);

@@ -126,6 +126,12 @@ pub(super) fn settled_bounce(
 ) -> Result<(RepeatingBounce, Vector), NoRepeatingBounce> {
     let SceneMap { map: own, mut reference, .. } = *of_scene;
     let mut bounce = of_scene.find()?;
+    if let Motion::Grows(_) = motion(&bounce.eigenvalues)
+        && let Some(settled) = of_scene.settled().filter(|settled| motion(&settled.eigenvalues) == Motion::DiesOut)
+    {
+        // The table has several bounces, and this one draws the run to it.
+        (reference, bounce) = (settled.at, settled);
+    }
     // A run that settles has the drift and the energy on which it does.
     let settles = motion(&bounce.eigenvalues) == Motion::DiesOut && !bounce.neutral.is_empty();
     let settled = settles.then(|| scene.orbit().ok().and_then(|orbit| settled(&own, orbit, &bounce))).flatten();

@@ -16,7 +16,7 @@
 //! e₃ = p·B(q̄, q̄)/2, e₄ = p·(C(q̄, q̄, q̄) + 3B(q̄, h̄₂₀))/6.
 
 use crate::analysis::jacobian::modulus;
-use crate::analysis::repeating::{Neutral, RepeatingBounce};
+use crate::analysis::repeating::{Neutral, ON_CIRCLE, RepeatingBounce};
 use crate::analysis::return_map::{ARC, Vector};
 use crate::numbers::dual::{SecondOrder, ThirdOrder};
 use crate::numbers::number::Arithmetic;
@@ -87,23 +87,29 @@ pub struct Resonance {
 
 impl Resonance {
     fn of(eigenvalue: Complex<f64>, resonant: [f64; 2], amplitude: f64) -> Option<Self> {
-        let square = eigenvalue * eigenvalue;
         let found =
-            [(3, resonant[0], amplitude), (4, resonant[1], amplitude * amplitude)].map(|(order, term, reach)| {
-                let power = if order == 3 { square * eigenvalue } else { square * square };
-                let away = modulus(power - Complex::new(1.0, 0.0));
-                Self { order, share: if term == 0.0 { 0.0 } else { f64::from(order) * term * reach / away } }
+            [(3, resonant[0], amplitude), (4, resonant[1], amplitude * amplitude)].map(|(order, term, reach)| Self {
+                order,
+                share: if term == 0.0 { 0.0 } else { term * reach / detuning(eigenvalue, order) },
             });
         let most = found.into_iter().max_by(|one, other| one.share.total_cmp(&other.share));
         most.filter(|most| most.share > LARGEST_SHARE)
     }
 
-    /// The resonance of a swing of a release about a bounce, if it is felt. It needs no neutral directions.
-    pub fn about(bounce: &RepeatingBounce, eigenvalue: Complex<f64>, release: &Vector) -> Option<Self> {
-        let pair = Pair::new(bounce, eigenvalue).ok()?;
+    /// The resonance of a swing of this amplitude about a bounce, if it is felt. It needs no neutral directions.
+    pub fn about(bounce: &RepeatingBounce, eigenvalue: Complex<f64>, amplitude: f64) -> Option<Self> {
+        let pair = match Pair::new(bounce, eigenvalue) {
+            Err(NoSwingForm::Resonance) => return Some(Self { order: 3, share: f64::INFINITY }),
+            pair => pair.ok()?,
+        };
         let (_, fourth) = pair.cubic(bounce, &DVector::zeros(pair.right.len()))?;
-        Self::of(eigenvalue, [pair.third, fourth].map(modulus), amplitude(&pair.left, bounce, release))
+        Self::of(eigenvalue, [pair.third, fourth].map(modulus), amplitude)
     }
+}
+
+/// |λⁿ − 1|/n: how far a swing turns beside a strong resonance of order n a bounce, rad.
+fn detuning(eigenvalue: Complex<f64>, order: u32) -> f64 {
+    modulus(eigenvalue.powu(order) - Complex::new(1.0, 0.0)) / f64::from(order)
 }
 
 /// The map along a pair of eigenvalues up to second order, with |w| the largest angle: 2|q_θ| = 1.
@@ -120,6 +126,19 @@ struct Pair {
     third: Complex<f64>,
 }
 
+/// q and p of an eigenvalue.
+fn directions(bounce: &RepeatingBounce, eigenvalue: Complex<f64>) -> Option<(Direction, Direction)> {
+    let RepeatingBounce { map, matrix, .. } = bounce;
+    let (q, p) = eigenvectors(matrix, eigenvalue)?;
+    let scale = 0.5 * map.body.rod.radius_of_gyration / modulus(q[map.place_of(ARC)?]);
+    Some((q * Complex::new(scale, 0.0), p / Complex::new(scale, 0.0)))
+}
+
+/// |w| of a state by a pair of eigenvalues, rad, to first order.
+pub fn amplitude_of(bounce: &RepeatingBounce, eigenvalue: Complex<f64>, state: &Vector) -> Option<f64> {
+    directions(bounce, eigenvalue).map(|(_, left)| amplitude(&left, bounce, state))
+}
+
 impl Pair {
     fn new(bounce: &RepeatingBounce, eigenvalue: Complex<f64>) -> Result<Self, NoSwingForm> {
         let RepeatingBounce { map, matrix, .. } = bounce;
@@ -128,10 +147,8 @@ impl Pair {
         if away(eigenvalue) < RESONANT || away(square) < RESONANT {
             return Err(NoSwingForm::Double);
         }
-        let (q, p) = eigenvectors(matrix, eigenvalue).ok_or(NoSwingForm::Double)?;
         let arc = map.place_of(ARC).ok_or(NoSwingForm::NoDerivative)?;
-        let scale = 0.5 * map.body.rod.radius_of_gyration / modulus(q[arc]);
-        let (right, left) = (q * Complex::new(scale, 0.0), p / Complex::new(scale, 0.0));
+        let (right, left) = directions(bounce, eigenvalue).ok_or(NoSwingForm::Double)?;
         let [u, v] = split(&right);
         let second = quadratic(bounce, [&u, &v]).ok_or(NoSwingForm::NoDerivative)?;
         // B(q, q).
@@ -210,6 +227,15 @@ impl SwingForm {
     /// The strong resonance of a swing, if it is felt.
     pub fn resonance(&self, amplitude: f64) -> Option<Resonance> {
         Resonance::of(self.eigenvalue, self.resonant, amplitude)
+    }
+
+    /// Tells whether a swing of this amplitude locks to a quarter turn and grows there: in dw/dn = iδw + d|w|²w + e₄w̄³ it does where
+    /// |e₄||w|² > |δ| + |Im d||w|² and Re d + √(|e₄|² − (Im d)²) > 0. A δ of rounding counts as none.
+    pub fn locks(&self, amplitude: f64) -> bool {
+        let (term, Complex { re, im }) = (self.resonant[1], self.cubic);
+        let (off, square) = (detuning(self.eigenvalue, 4), amplitude * amplitude);
+        let is_held = term > im.abs() && (off <= ON_CIRCLE || (term - im.abs()) * square > off);
+        is_held && re + (term * term - im * im).sqrt() > 0.0
     }
 
     /// Re Σ b_j a_j, per bounce² and rad²: above 0 a swing grows by the kept quantities that it pumps.

@@ -65,8 +65,14 @@ pub struct Throw {
 
 /// Throws the body of a scene, which comes to a strike or rests on the table, to an apex.
 ///
-/// The table assumes the restitution that the scene's table assumes. It moves along itself as the scene says.
-pub fn throw(scene: &Scene, coming: &PreImpact, target: &ThrowTarget) -> Result<Throw, ThrowFailure> {
+/// The table assumes the restitution that the scene's table assumes. It moves along itself as the scene says. `before` is the table at the strike
+/// before with the flight since then, s, if there was one.
+pub fn throw(
+    scene: &Scene,
+    coming: &PreImpact,
+    before: Option<(Pose, f64)>,
+    target: &ThrowTarget,
+) -> Result<Throw, ThrowFailure> {
     if scene.is_point() {
         return Err(ThrowFailure::PointMass);
     }
@@ -82,7 +88,7 @@ pub fn throw(scene: &Scene, coming: &PreImpact, target: &ThrowTarget) -> Result<
     }
     let struck = PreImpact { plan: Some(motion), ..*coming };
     let strike = body.strike(&struck);
-    let load = Pose::of(&strike).load(None);
+    let load = Pose::of(&strike).load(before);
     if let Some(violation) = limits.and_then(|limits| limits.exceeded(&load)) {
         return Err(ThrowFailure::BeyondLimits(violation));
     }
@@ -146,7 +152,7 @@ pub fn throw_from_contact(
     let mut time = 0.0;
     for _ in 0..MOST_GUESSES {
         let coming = fallen(&body, held, time);
-        let thrown = throw(scene, &coming, target)?;
+        let thrown = throw(scene, &coming, None, target)?;
         let change = (thrown.strike.alpha - pose.alpha).abs();
         let needed = if change == 0.0 { 0.0 } else { change / rate };
         if needed <= time {

@@ -1,7 +1,6 @@
 //! Kinds of numbers that the formulas of a bounce run on, sine and cosine with the same bits everywhere, and the choice of
 //! instructions.
 
-pub(crate) mod arctangent;
 pub(crate) mod compensated_sum;
 pub(crate) mod covariance;
 pub mod dispatch;

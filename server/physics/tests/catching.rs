@@ -316,14 +316,16 @@ fn a_contact_with_friction_and_errors_is_held() {
 fn a_throw_misses_by_the_errors_of_its_table() {
     let coming = PreImpact::at(1, 0.0, State { theta: 0.0, x_dot: 0.0, y_dot: -0.5, theta_dot: 0.0 });
     let target = ThrowTarget { height: 0.3, theta: 0.0 };
-    let exact = throw(&rod_from_height(&[], &[]), &coming, &target).unwrap();
+    let exact = throw(&rod_from_height(&[], &[]), &coming, None, &target).unwrap();
     let off =
-        throw(&rod_from_height(&[(Name::TiltOffset, 1e-3), (Name::SpeedError, 0.01)], &[]), &coming, &target).unwrap();
+        throw(&rod_from_height(&[(Name::TiltOffset, 1e-3), (Name::SpeedError, 0.01)], &[]), &coming, None, &target)
+            .unwrap();
     assert!(exact.residual < 1e-12 && off.residual > 1e-4);
     let PlannedTableMotion { alpha, normal_velocity, .. } = off.motion;
     assert!((alpha - 1e-3).abs() < 1e-15 && (normal_velocity / exact.motion.normal_velocity - 1.01).abs() < 1e-12);
     assert!(
-        throw(&rod_from_height(&[(Name::TableLength, 0.1)], &[]), &PreImpact { x: 0.06, ..coming }, &target).is_err()
+        throw(&rod_from_height(&[(Name::TableLength, 0.1)], &[]), &PreImpact { x: 0.06, ..coming }, None, &target)
+            .is_err()
     );
 }
 
@@ -425,7 +427,7 @@ fn thrown(scene: &Scene, found: &Throw) -> Scene {
 fn a_thrown_body_is_caught() {
     let scene = scene_with(&[(Name::Restitution, Value::Number(0.8))]);
     let resting = PreImpact::at(1, 0.1, State { theta: 0.05, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 });
-    let found = throw(&scene, &resting, &ThrowTarget { height: 0.4, theta: 0.1 }).unwrap();
+    let found = throw(&scene, &resting, None, &ThrowTarget { height: 0.4, theta: 0.1 }).unwrap();
     for strategy in [Strategy::BounceDown, Strategy::Plan, Strategy::Brake] {
         let settings = CatchSettings { strategy: Some(strategy), ..CatchSettings::default() };
         let caught = catch(&thrown(&scene, &found), &settings, None, &mut || true).unwrap();
@@ -442,7 +444,7 @@ fn a_whole_turn_is_followed_by_a_plan_to_rest() {
     // Half a turn up to the apex and half a turn down: the body lands as it was thrown.
     let scene = scene_with(&[]);
     let resting = PreImpact::at(1, 0.0, State { theta: 0.0, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 });
-    let found = throw(&scene, &resting, &ThrowTarget { height: 1.0, theta: 0.5 * TAU }).unwrap();
+    let found = throw(&scene, &resting, None, &ThrowTarget { height: 1.0, theta: 0.5 * TAU }).unwrap();
     let landing = found.landing.unwrap();
     assert!((landing.state.theta - TAU).abs() < 1e-9, "{landing:?}");
     // A strike does not tell a whole turn from none.
@@ -472,7 +474,7 @@ fn throws_at_each_impact_juggle_as_a_program_does() {
             let state = flight.end(first_contact_from_rest(&flight).unwrap());
             assert!((state.y_dot - contact.state.y_dot).abs() < 1e-12, "{n}");
             let target = ThrowTarget { height: heights[n % heights.len()], theta: 0.0 };
-            let found = throw(&plain, &PreImpact::at(1, 0.0, state), &target).unwrap();
+            let found = throw(&plain, &PreImpact::at(1, 0.0, state), None, &target).unwrap();
             let (_, speed) = strike.table_velocity;
             assert!(
                 (found.motion.normal_velocity - speed).abs() < 1e-12,
@@ -518,7 +520,7 @@ fn contact(random: &mut Random) -> PreImpact {
 fn half_a_turn_has_its_printed_tilt_and_table_speed() {
     let v = (2.0 * G * (0.2 - L)).sqrt();
     let coming = PreImpact::at(1, 0.0, State { theta: 0.0, x_dot: 0.0, y_dot: -v, theta_dot: 0.0 });
-    let thrown = throw(&paper_with(&[]), &coming, &ThrowTarget { height: 0.4, theta: PI }).unwrap();
+    let thrown = throw(&paper_with(&[]), &coming, None, &ThrowTarget { height: 0.4, theta: PI }).unwrap();
     assert!((thrown.motion.alpha - -0.256).abs() < 5e-4, "{thrown:?}");
     assert!((thrown.motion.normal_velocity - 0.894).abs() < 5e-4, "{thrown:?}");
 }
@@ -538,7 +540,7 @@ fn any_rig_throws_to_the_apex_or_says_why() {
         let turns = if is_rough { 8.0 } else { 1.0 } * random.between(-2.5, 2.5).round();
         let target =
             ThrowTarget { height: l + random.between(0.05, 1.0), theta: PI * turns + random.between(-1.5, 1.5) };
-        let found = match throw(scene, &coming, &target) {
+        let found = match throw(scene, &coming, None, &target) {
             Ok(found) => found,
             Err(ThrowFailure::AngleOutOfReach { reach, .. }) => {
                 short += 1;
@@ -583,7 +585,7 @@ fn any_rig_throws_to_the_apex_or_says_why() {
         }
         // Of two tilts of one size, on either side, a body and its mirror image may take the same.
         let mirrored = PreImpact::at(1, -coming.x, mirror(&coming.state));
-        let opposite = throw(scene, &mirrored, &ThrowTarget { theta: -target.theta, ..target }).unwrap();
+        let opposite = throw(scene, &mirrored, None, &ThrowTarget { theta: -target.theta, ..target }).unwrap();
         let apart = opposite.motion.alpha.abs() - motion.alpha.abs();
         assert!(apart.abs() < 1e-8, "{:?} {opposite:?} {found:?}", mix.features);
     }
@@ -597,14 +599,14 @@ fn mirror(state: &State) -> State {
 #[test]
 fn whole_turns_need_more_tilt_than_half_turns() {
     let scene = paper_with(&[]);
-    let tilt = |theta: f64| throw(&scene, &upright(), &ThrowTarget { height: 1.0, theta }).unwrap().motion.alpha;
+    let tilt = |theta: f64| throw(&scene, &upright(), None, &ThrowTarget { height: 1.0, theta }).unwrap().motion.alpha;
     assert!(tilt(0.0) == 0.0 && tilt(PI) < 0.0 && tilt(TAU) < tilt(PI) && tilt(-PI) == -tilt(PI));
 }
 
 #[test]
 fn a_table_with_a_wrong_belief_misses_and_says_by_how_much() {
     let scene = paper_with(&[(Name::Restitution, Value::Number(0.8)), (Name::AssumedRestitution, Value::Number(1.0))]);
-    let found = throw(&scene, &upright(), &ThrowTarget { height: 0.4, theta: 0.0 }).unwrap();
+    let found = throw(&scene, &upright(), None, &ThrowTarget { height: 0.4, theta: 0.0 }).unwrap();
     // From rest the impulse is (1 + e)w in place of (1 + ê)w.
     let reached = L + (0.4 - L) * 0.81;
     assert!((found.apex.y - reached).abs() < 1e-12 && (found.residual - (0.4 - reached)).abs() < 1e-12, "{found:?}");
@@ -614,7 +616,7 @@ fn a_table_with_a_wrong_belief_misses_and_says_by_how_much() {
 fn throws_that_cannot_be_say_why() {
     let target = ThrowTarget { height: 0.4, theta: 0.0 };
     let of = |settings: &[(Name, Value)], coming: &PreImpact, target: ThrowTarget| {
-        throw(&paper_with(settings), coming, &target).unwrap_err()
+        throw(&paper_with(settings), coming, None, &target).unwrap_err()
     };
     let low = of(&[], &upright(), ThrowTarget { height: 0.1, ..target });
     assert!(matches!(low, ThrowFailure::TooLow { height: 0.1, least } if least == L), "{low:?}");
@@ -652,8 +654,8 @@ fn a_triangle_that_would_touch_with_another_corner_is_not_thrown() {
     draft.set(Name::TiltGain, Some(Value::Number(1.1))).unwrap();
     draft.set(Name::Height, Some(Value::Number(0.2))).unwrap();
     let scene = draft.build().unwrap();
-    assert!(throw(&scene, &upright(), &ThrowTarget { height: 0.4, theta: 0.2 }).is_ok());
-    let flip = throw(&scene, &upright(), &ThrowTarget { height: 0.15, theta: 3.0 * PI });
+    assert!(throw(&scene, &upright(), None, &ThrowTarget { height: 0.4, theta: 0.2 }).is_ok());
+    let flip = throw(&scene, &upright(), None, &ThrowTarget { height: 0.15, theta: 3.0 * PI });
     assert!(matches!(flip, Err(ThrowFailure::OtherVertex(_))), "{flip:?}");
 }
 

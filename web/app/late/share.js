@@ -40,7 +40,12 @@ export function bringShare(page) {
   const clip = async () => {
     if (run.phase !== 'running') page.toggle();
     const { saveClip } = await import('../../export/clip.js');
-    await saveClip(view, byId('controls'), () => byId('verdict').innerText.replace(/\s+/g, ' '));
+    const line = () => {
+      const seen = /** @type {HTMLElement} */ (byId('verdict').cloneNode(true));
+      for (const hidden of seen.querySelectorAll('.unseen, [hidden]')) hidden.remove();
+      return [...seen.querySelectorAll('.headline, .facts > span')].map((one) => one.textContent?.trim()).join(' · ');
+    };
+    await saveClip(view, byId('controls'), line);
   };
   const card = () => {
     const played = page.playedQuery;

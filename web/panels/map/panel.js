@@ -23,10 +23,10 @@ import {
   rowsOf,
   sideParts,
 } from './settings.js';
-import { Legend, Sample, cellWords, decimalsOf, labelOf, mapWords } from './words.js';
+import { Legend, Sample, cellWords, decimalsOf, labelOf, mapWords, sceneWords } from './words.js';
 
 /** @typedef {{x: number, y: number}} Values of the two fields */
-/** The drawn cells, the request for them, and the settings with the finest columns wanted. @typedef {{grid: Grid, request: URLSearchParams, settings: MapSettings}} Shown */
+/** The drawn cells, the request for them, that for the whole map, and the settings with the finest columns wanted. @typedef {{grid: Grid, request: URLSearchParams, whole: string, settings: MapSettings}} Shown */
 
 const HINT =
   'Drag the point: the body drops from there. With Shift, drag a rectangle to look closer; Escape goes back. With keys: arrows move the point, with Shift ten cells, + looks closer.';
@@ -88,7 +88,8 @@ function useMap({ query, link }, settings, near) {
     asked.current = { request, parts };
     blame([]);
     if (!query) return task.stop(NO_SCENE);
-    const own = (/** @type {Grid} */ grid, /** @type {URLSearchParams} */ of) => show({ grid, request: of, settings });
+    const own = (/** @type {Grid} */ grid, /** @type {URLSearchParams} */ of) =>
+      show({ grid, request: of, whole: request, settings });
     const how = { unasked, heard: task.hear, show: own };
     const found = await task.run((signal) => refine(settings, query, { signal, ...how }), failed);
     if (!found) return;
@@ -110,7 +111,7 @@ function useMap({ query, link }, settings, near) {
     const timer = setTimeout(() => void ask(!byHand), byHand ? 0 : QUIET_MS);
     return () => clearTimeout(timer);
   }, [near, request, parts]);
-  return { task, shown, errors, ask };
+  return { task, shown, isOld: shown !== null && shown.whole !== request, errors, ask };
 }
 
 /** @param {{page: PanelPage}} props */
@@ -119,7 +120,7 @@ export function StabilityMap({ page }) {
   const { settings, usual, broken } = map;
   useWhole(page, 'map', broken);
   const [place, near] = useNear();
-  const { task, shown, errors, ask } = useMap(page, settings, near);
+  const { task, shown, isOld, errors, ask } = useMap(page, settings, near);
   const grid = shown?.grid ?? null;
   const [cells, frame] = [useRef(/** @type {any} */ (null)), useRef(/** @type {HTMLElement | null} */ (null))];
   const picture = useRef(/** @type {MapPicture | null} */ (null));
@@ -247,11 +248,19 @@ export function StabilityMap({ page }) {
     () => html`<${MapControls} page=${page} map=${map} errors=${errors} turn=${set} />`,
     [page.fields, JSON.stringify([settings, usual]), errors, angles()],
   );
-  const cursor = cellAt(pointed);
-  const cell = cursor ?? cellAt(mark);
-  const read = !grid ? '' : !cell ? 'The scene lies outside of this map' : cellWords(grid, cell);
   const { words, active, count, progress, ended } = task;
-  return html`<div class="stability-map" ref=${place} onKeyDown=${leave}>
+  const cursor = cellAt(pointed);
+  const own = mark && cellAt(mark);
+  /** The cell at the pointer, else the scene in its own. */
+  const read = () => {
+    if (!grid) return '';
+    if (isOld) return active ? 'Computing…' : '';
+    if (cursor) return cellWords(grid, cursor);
+    return own
+      ? sceneWords(grid, own, { x: Number(across), y: Number(upwards) })
+      : 'The scene lies outside of this map';
+  };
+  return html`<div class=${`stability-map ${isOld ? 'old' : ''}`} ref=${place} onKeyDown=${leave}>
     <div class="map-box" id="map-box" tabindex="0" role="application" aria-roledescription="map"
       aria-label=${grid ? labelOf(grid) : 'Stability map'} aria-describedby="map-hint" aria-busy=${String(active)}
       ...${listeners}>
@@ -262,7 +271,7 @@ export function StabilityMap({ page }) {
         ${mark && html`<span class="map-point" style=${{ left: percent(mark.x), bottom: percent(mark.y) }} />`}
       </div>
     </div>
-    <output class="readout" id="map-readout" aria-live="off">${unbroken(read)}</output>
+    <output class="readout" id="map-readout" aria-live="off">${unbroken(read())}</output>
     <p class="unseen" id="map-spoken" role="status">${spoken}</p>
     <p class="map-legend">${grid && html`<${Legend} grid=${grid} />`}</p>
     <details class="map-options" id="map-options">

@@ -110,6 +110,20 @@ export function cellWords(grid, cell) {
   ].join('   ');
 }
 
+/** The scene in its cell. Beside the middle of that its run is another one, so that the kind of its end alone is told. @param {Grid} grid @param {Cell} cell @param {{x: number, y: number}} values of the scene */
+export function sceneWords(grid, cell, values) {
+  const { x, y } = grid.settings;
+  const isMiddle = values.x === grid.x(cell.column) && values.y === grid.y(cell.row);
+  if (isMiddle || !grid.classes || !grid.has(cell.row)) return cellWords(grid, cell);
+  const own = (/** @type {Side} */ side, /** @type {number} */ value) =>
+    `${symbolOf(side)} ${withUnit(value, side.field.unit)}`;
+  return [
+    own(x, values.x),
+    own(y, values.y),
+    `${CLASSES[grid.classOf(grid.outcome(cell.column, cell.row))].name} here`,
+  ].join('   ');
+}
+
 /** The whole map in a sentence. @param {Grid} grid */
 export function mapWords(grid) {
   const total = number(grid.columns * grid.rows, 7);

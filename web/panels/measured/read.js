@@ -90,9 +90,11 @@ function headOf(head) {
   const told =
     /^(.+?)\s*(?:[([]([^)\]]*)[)\]]|\/(.+))$/.exec(head.trim()) ??
     /^(.+?)_((?:k|c|m)?(?:s|rad|deg|m|m_per_s|rad_per_s|deg_per_s))$/.exec(head.trim());
+  const [named, unit] = told ? [meant(told[1]), plainUnit(told[2] ?? told[3])] : [undefined, ''];
   const whole = meant(head);
-  if (!told || whole) return { head, quantity: whole ?? null, unit: '' };
-  return { head, quantity: meant(told[1]) ?? null, unit: plainUnit(told[2] ?? told[3]) };
+  // A degree sign is no letter, so that a name with it is one of its own too.
+  if (whole && !(named && sizeOf(named, unit) !== null)) return { head, quantity: whole, unit: '' };
+  return { head, quantity: named ?? null, unit };
 }
 
 /** The cells of every line that has any. Quotes hold what is between them together, ends of lines included. @param {string} text */
@@ -266,7 +268,10 @@ export function Columns({ file: { content, pick } }) {
   // It stays open while its columns are taken for others.
   const open = useRef(false);
   if (heads.length === 0) return null;
-  if (!reading) open.current = true;
+  const timeless = heads.every(({ quantity }) => quantity !== 't');
+  const untold = heads.some(({ quantity, unit }) => quantity && quantity !== 'n' && unit === '');
+  if (!reading || timeless || untold) open.current = true;
+  const asked = `${timeless ? '; none is the time' : ''}${untold ? '; check the units that no head tells' : ''}`;
   const left = heads.filter(({ quantity }) => quantity === null);
   const named = left.map(({ head }) => shown(head)).filter(Boolean);
   const row = (/** @type {Head} */ one, /** @type {number} */ place) => {
@@ -274,9 +279,12 @@ export function Columns({ file: { content, pick } }) {
     const units = unitsOf(one);
     const take = (/** @type {Partial<Head>} */ part) =>
       pick(new Map(heads.map((head, at) => [at, at === place ? { ...head, ...part } : head])));
-    // A column that is taken for something else begins in the unit of SI.
-    const is = (/** @type {string} */ name) =>
-      take({ quantity: /** @type {Quantity | ''} */ (name) || null, unit: '' });
+    // A column that is taken for something else begins in the unit of its head, if it may have that, or of SI.
+    const is = (/** @type {string} */ name) => {
+      const quantity = /** @type {Quantity | ''} */ (name) || null;
+      const { unit } = headOf(one.head);
+      take({ quantity, unit: quantity && sizeOf(quantity, unit) !== null ? unit : '' });
+    };
     return html`<${Row} cells=${[
       label,
       html`<${Choice} label=${`${label}: is`} value=${one.quantity ?? ''} choices=${CHOICES} changed=${is} />`,
@@ -285,7 +293,7 @@ export function Columns({ file: { content, pick } }) {
     ]} />`;
   };
   return html`<details class="measured-columns" id="fit-columns" open=${open.current}>
-    <summary>Columns: ${heads.length - left.length} used, ${left.length} not used</summary>
+    <summary>Columns: ${heads.length - left.length} used, ${left.length} not used${asked}</summary>
     <${Table} label="Columns of the file" head=${['Column', 'is', 'in']}>${heads.slice(0, MOST).map(row)}<//>
     ${reading && named.length > 0 && html`<p class="muted">Not used: ${named.slice(0, NAMED).join(', ')}${named.length > NAMED && ' and more'}.</p>`}
   </details>`;

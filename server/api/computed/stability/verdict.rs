@@ -379,7 +379,7 @@ fn course(swing: &Swing, run: &NonlinearRun) -> String {
     let shift = shifts.iter().copied().max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0);
     let pumps =
         format!("to second order a swing of {amplitude} rad, as here, changes a kept quantity by {shift} a bounce");
-    let course = match form.course() {
+    let course = match swing.course_here() {
         Course::Circles => "to third order a swing neither grows nor dies out".to_owned(),
         Course::Grows => {
             let grows = match swing.escape_bounces() {
@@ -402,13 +402,16 @@ fn course(swing: &Swing, run: &NonlinearRun) -> String {
         Course::Pumps => format!("{pumps}, which makes it grow"),
         Course::Settles => format!("{pumps}, which makes it die out"),
         Course::Shifts => format!("{pumps}, and nothing brings that back"),
+        Course::Locks => {
+            "at a quarter turn a swing locks to the bounces, and to third order it grows, however small".to_owned()
+        }
     };
     match swing.farther.filter(|farther| *farther != form.course()) {
         None => course,
         Some(farther) => {
             let then = match farther {
                 Course::Circles => "circles",
-                Course::Grows | Course::Pumps => "grows",
+                Course::Grows | Course::Pumps | Course::Locks => "grows",
                 Course::DiesOut | Course::Settles => "dies out",
                 Course::Shifts => "changes a kept quantity, and nothing brings that back",
             };

@@ -217,7 +217,7 @@ pub enum OrbitFailure {
     )]
     NoConvergence { residual: f64, steps: u32 },
     #[error(
-        "Newton's iteration came to the body at rest on the table (ẏ = {speed} m/s), which bounces no more: give another guess"
+        "Newton's iteration came to the body at rest on the table (ẏ_c = {speed} m/s), which bounces no more: give another guess"
     )]
     AtRest { speed: f64 },
     #[error("{0}")]
@@ -403,7 +403,8 @@ pub(super) fn correct(
     }
     let residual = closed.residual().max(off(&place).abs());
     // At rest on the table all is closed, and nothing bounces.
-    let speed = closed.contacts.iter().map(|contact| contact.state.y_dot.abs()).fold(0.0, f64::max);
+    let body = &path.start.body;
+    let speed = closed.contacts.iter().map(|contact| body.contact_speed(&contact.state).abs()).fold(0.0, f64::max);
     if speed <= AT_REST * path.start.speed {
         Err(OrbitFailure::AtRest { speed })
     } else if residual <= SOLVED {

@@ -3,7 +3,6 @@
 pub(crate) mod row;
 pub(crate) mod vector;
 
-use crate::numbers::arctangent;
 use crate::numbers::lanes::vector::{Kernel, Vector, lanes, lanes_mut, run_apart};
 use crate::numbers::number::{Arithmetic, Mask, operators};
 use crate::numbers::trig;
@@ -99,16 +98,6 @@ impl<V: Vector> Packs<V> {
     #[inline(always)]
     fn are_all_within(self, most: f64) -> bool {
         self.magnitude().is_at_most(Self::from_f64(most)).all()
-    }
-
-    /// Arctangent, rad, of numbers from 0 to [`arctangent::REDUCIBLE`].
-    #[inline(always)]
-    pub(crate) fn arctangent(self) -> Self {
-        if self.are_all_within(arctangent::SMALL) {
-            arctangent::arctangent_small(self)
-        } else {
-            arctangent::arctangent_reducible(self)
-        }
     }
 }
 

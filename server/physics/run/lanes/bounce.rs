@@ -12,7 +12,6 @@ use crate::map::polygon::ClearRange;
 use crate::map::strike::State;
 use crate::map::table::actuator_load::{ActuatorLoad, Pose};
 use crate::map::table::noise::{Block, ContactErrors, Noise, SensingErrors};
-use crate::numbers::arctangent;
 use crate::numbers::dispatch::Vector;
 use crate::numbers::lanes::{MOST_LANES, PackMask, Packs};
 use crate::numbers::number::{Arithmetic, Mask};
@@ -34,9 +33,6 @@ const ROUGH_SURE_RISE: f64 = 10.0 * SURE_RISE;
 const FARTHEST_WAY: f64 = 1e4;
 
 const _: () = assert!(EndingKind::ALL.len() == 10, "a new kind of ending needs its condition in `Lanes::bounced`");
-
-/// A tangent that is its own arctangent in doubles.
-const TINY: f64 = 1e-30;
 
 /// Bodies in the lanes, with the state of their runs.
 #[derive(Clone, Debug)]
@@ -285,18 +281,12 @@ fn meet<V: Vector>(flight: &Flight<Packs<V>>) -> (Packs<V>, PackMask<V>) {
     (t, is_found & starts_well & ends_below & zero.is_less(flight.gravity))
 }
 
-/// Turns a point mass to the angle of its velocity, rad, as [`crate::map::body::Body::point_state`]; where certain.
+/// Turns a point mass to the angle of its velocity, rad, as [`crate::map::body::Body::point_state`]; where it comes down.
 #[inline(always)]
 fn turned_with_velocity<V: Vector>(end: &mut State<Packs<V>>) -> PackMask<V> {
-    let zero = Packs::from_f64(0.0);
-    // With its sign, also of 0.
-    let ratio = end.x_dot / -end.y_dot;
-    let size = ratio.magnitude();
-    let angle = size.arctangent();
-    let angle = Packs::select(ratio.is_less(zero), -angle, angle);
-    end.theta = Packs::select(size.is_less(Packs::from_f64(TINY)), ratio, angle);
-    end.theta_dot = zero;
-    end.y_dot.is_less(zero) & size.is_at_most(Packs::from_f64(arctangent::REDUCIBLE))
+    end.theta = Packs::angle_of(end.x_dot, -end.y_dot);
+    end.theta_dot = Packs::from_f64(0.0);
+    end.y_dot.is_less(end.theta_dot)
 }
 
 /// Tells where no other vertex is below the table at a contact at an angle β from its normal, and none comes down in the flight that ends at
