@@ -1,4 +1,4 @@
-// The shapes of requests and answers. Written by `node tests/browser/contract.js` from openapi.yaml; not to be edited.
+// The shapes of requests and answers that the page uses. Written by `node tests/browser/contract.js` from openapi.yaml; not to be edited.
 
 export type paths = Record<string, never>;
 export type webhooks = Record<string, never>;
@@ -22,21 +22,6 @@ export interface components {
             unbroken: number;
             tolerance: number;
             spacing: number;
-        };
-        BatchEnd: {
-            lines: number;
-            problems: number;
-        };
-        BatchLine: {
-            line: number;
-            answer: {
-                [key: string]: unknown;
-            };
-        } | {
-            line: number;
-            problem: components["schemas"]["Problem"];
-        } | {
-            end: components["schemas"]["BatchEnd"];
         };
         BooleansOrNull: (boolean | null)[];
         BounceState: {
@@ -145,21 +130,6 @@ export interface components {
             normal_force: number;
             friction: number | null;
         };
-        CatchEnd: {
-            outcome: components["schemas"]["CatchOutcome"];
-            settings: components["schemas"]["CatchUsed"];
-            strategy: components["schemas"]["CatchReason"];
-            error_bound: number | null;
-            contact_from: number | null;
-            upright_within: components["schemas"]["UprightWithin"];
-            demand: components["schemas"]["CatchDemand"];
-            reach: components["schemas"]["CatchReach"] | null;
-            notes: string[];
-        };
-        CatchLastLine: {
-            end: components["schemas"]["CatchEnd"];
-        };
-        CatchLine: components["schemas"]["CatchRow"] | components["schemas"]["CatchLastLine"];
         CatchOutcome: {
             kind: components["schemas"]["CatchOutcomeKind"];
             t: number;
@@ -179,67 +149,6 @@ export interface components {
         CatchReason: {
             name: components["schemas"]["CatchStrategy"];
             reason: string;
-        };
-        CatchRequest: {
-            preset?: components["schemas"]["PresetName"] | null;
-            scene?: components["schemas"]["ScenePatch"] | null;
-            /**
-             * @default auto
-             * @enum {string|null}
-             */
-            strategy: "auto" | "bounce_down" | "plan" | "brake" | null;
-            ratio?: number | null;
-            strikes?: number | null;
-            brake?: number | null;
-            weights?: components["schemas"]["CatchRequestWeights"] | null;
-            /** @default 0.005 */
-            hold_speed: number | null;
-            /** @default 6 */
-            hold: number | null;
-            /** @default 200 */
-            hold_samples: number | null;
-        };
-        CatchRequestWeights: {
-            state?: {
-                /** @default 1 */
-                x: number | null;
-                /** @default 10 */
-                theta: number | null;
-                /** @default 0.1 */
-                x_dot: number | null;
-                /** @default 0.1 */
-                theta_dot: number | null;
-            } | number[] | null;
-            /** @default 10 */
-            input: number | null;
-        };
-        CatchRow: {
-            phase: components["schemas"]["Phase"];
-            /** Format: int64 */
-            n: number | null;
-            t: number;
-            x: number;
-            theta: number;
-            x_dot: number;
-            y_dot: number | null;
-            theta_dot: number;
-            x_dot_after: number | null;
-            y_dot_after: number | null;
-            theta_dot_after: number | null;
-            alpha: number;
-            impulse_normal: number | null;
-            impulse_tangential: number | null;
-            contact_mode: components["schemas"]["ContactMode"] | null;
-            flight_time: number | null;
-            contact_velocity: number | null;
-            clearance: number | null;
-            table_velocity: number | null;
-            ratio: number | null;
-            normal_force: number | null;
-            tangential_force: number | null;
-            table_x: number | null;
-            table_y: number | null;
-            table_y_dot: number | null;
         };
         /** @enum {string} */
         CatchStrategy: "bounce_down" | "plan" | "brake";
@@ -294,10 +203,6 @@ export interface components {
             regions: components["schemas"]["RegionLinks"];
             notes: string[];
         };
-        ControllerEnd: {
-            scene: components["schemas"]["Scene"];
-            notes: string[];
-        };
         ControllerFixedPoint: {
             x: number;
             theta: number;
@@ -306,52 +211,6 @@ export interface components {
             theta_dot: number;
             flight_time: number;
             apex_height: number;
-        };
-        ControllerLastLine: {
-            end: components["schemas"]["ControllerEnd"];
-        };
-        ControllerLine: components["schemas"]["ControllerRow"] | components["schemas"]["ControllerLastLine"];
-        ControllerRequest: {
-            preset?: components["schemas"]["PresetName"] | null;
-            scene?: components["schemas"]["ScenePatch"] | null;
-            /** @enum {string|null} */
-            contact?: "frictionless" | "stick" | null;
-            weights?: components["schemas"]["ControllerRequestWeights"] | null;
-        };
-        ControllerRequestWeights: {
-            state?: {
-                /** @default 1 */
-                x: number | null;
-                /** @default 10 */
-                theta: number | null;
-                /** @default 0.1 */
-                x_dot: number | null;
-                /** @default 0.1 */
-                theta_dot: number | null;
-            } | number[] | null;
-            /** @default 10 */
-            input: number | null;
-        };
-        ControllerRow: {
-            contact: components["schemas"]["LawContact"] | null;
-            gain_x: number | null;
-            gain_theta: number | null;
-            gain_x_dot: number | null;
-            gain_theta_dot: number | null;
-            spectral_radius: number | null;
-            bounces_per_decade: number | null;
-            residual: number | null;
-            /** Format: int64 */
-            iterations: number;
-            energy_eigenvalue: number | null;
-            fixed_point_y_dot: number | null;
-            fixed_point_flight_time: number | null;
-            applied_spectral_radius: number | null;
-            given_spectral_radius: number | null;
-            feedback_below_limit: number | null;
-            feedback_above_limit: number | null;
-            feedback_below_margin: number | null;
-            feedback_above_margin: number | null;
         };
         CountRange: {
             minimum: number;
@@ -412,57 +271,6 @@ export interface components {
             beyond_limits: number;
             off_table: number;
         };
-        EnsembleLastLine: {
-            end: components["schemas"]["EnsembleSummary"];
-        };
-        EnsembleLine: components["schemas"]["EnsembleRow"] | components["schemas"]["Progress"] | components["schemas"]["EnsembleProgressEnd"] | components["schemas"]["EnsembleLastLine"];
-        EnsembleProgressEnd: {
-            end: components["schemas"]["Ensemble"];
-            pictures: {
-                survival: string;
-            };
-        };
-        EnsembleRequest: {
-            preset?: components["schemas"]["PresetName"] | null;
-            scene?: components["schemas"]["ScenePatch"] | null;
-            /** @default 200 */
-            runs: number | null;
-            /** @default 400 */
-            bounces: number | null;
-            /** Format: int64 */
-            seed?: number | null;
-            /** @default false */
-            angles: boolean | null;
-            tile?: components["schemas"]["EnsembleRequestTile"] | null;
-        };
-        EnsembleRequestTile: {
-            index: number;
-            of: number;
-        };
-        EnsembleRow: {
-            /** Format: int64 */
-            n: number;
-            /** Format: int64 */
-            at_risk: number;
-            /** Format: int64 */
-            ended: number;
-            survival: number;
-            lower: number;
-            upper: number;
-            theta_q05: number | null;
-            theta_q25: number | null;
-            theta_q50: number | null;
-            theta_q75: number | null;
-            theta_q95: number | null;
-        };
-        EnsembleSummary: {
-            survived: components["schemas"]["Survived"];
-            mean_bounces: number;
-            median_bounces: number | null;
-            half_life: number | null;
-            counts: components["schemas"]["EnsembleCounts"];
-            notes: string[];
-        };
         EnsembleTile: {
             index: number;
             of: number;
@@ -495,9 +303,6 @@ export interface components {
             text: string;
             detail: string;
         };
-        Failures: {
-            items: components["schemas"]["Failure"][];
-        };
         Field: {
             field: string;
             symbol: string;
@@ -527,9 +332,6 @@ export interface components {
             unit: string;
             value: number;
         };
-        Fields: {
-            items: components["schemas"]["Field"][];
-        };
         Fit: {
             estimates: components["schemas"]["FitEstimate"][];
             correlation: components["schemas"]["NumbersOrNull"][];
@@ -552,15 +354,6 @@ export interface components {
             x: number | null;
             t: number | null;
         };
-        FitEnd: {
-            estimates: components["schemas"]["FitEstimate"][];
-            chi_squared: number;
-            degrees_of_freedom: number;
-            quality: components["schemas"]["FitQuality"];
-            scene: components["schemas"]["Scene"];
-            stability: components["schemas"]["FitStability"];
-            notes: string[];
-        };
         FitEstimate: {
             field: string;
             value: number;
@@ -570,22 +363,8 @@ export interface components {
             identifiable: boolean;
             detail: string | null;
         };
-        FitLastLine: {
-            end: components["schemas"]["FitEnd"];
-        };
-        FitLine: components["schemas"]["FitRow"] | components["schemas"]["FitProgress"] | components["schemas"]["FitProgressEnd"] | components["schemas"]["FitProgressFailure"] | components["schemas"]["FitLastLine"];
-        FitPictures: {
-            residuals: string;
-        };
         FitProgress: {
             progress: components["schemas"]["FitStep"];
-        };
-        FitProgressEnd: {
-            end: components["schemas"]["Fit"];
-            pictures: components["schemas"]["FitPictures"];
-        };
-        FitProgressFailure: {
-            problem: components["schemas"]["Problem"];
         };
         FitQuality: {
             kind: components["schemas"]["FitQualityKind"];
@@ -626,21 +405,6 @@ export interface components {
             x: components["schemas"]["NumbersOrNull"];
             t: components["schemas"]["NumbersOrNull"];
             outlier: components["schemas"]["BooleansOrNull"];
-        };
-        FitRow: {
-            /** Format: int64 */
-            n: number;
-            /** Format: int64 */
-            row: number;
-            /** Format: int64 */
-            window: number;
-            theta: number | null;
-            x_dot: number | null;
-            y_dot: number | null;
-            theta_dot: number | null;
-            x: number | null;
-            t: number | null;
-            outlier: boolean | null;
         };
         FitStability: {
             verdict: components["schemas"]["Verdict"];
@@ -685,13 +449,6 @@ export interface components {
             field: string;
             detail: string;
         };
-        Health: {
-            status: components["schemas"]["HealthStatus"];
-            build: string;
-            version: string;
-        };
-        /** @enum {string} */
-        HealthStatus: "ok";
         /** @enum {string} */
         HoldContact: "frictionless" | "matched" | "coulomb";
         HoldEnd: {
@@ -738,125 +495,6 @@ export interface components {
             clearance: number[];
             error_estimate: components["schemas"]["NumbersOrNull"];
         };
-        Intervention: {
-            impact: number;
-            set?: components["schemas"]["LiveFields"] | null;
-            kick?: {
-                /** @default 0 */
-                x_dot: number | null;
-                /** @default 0 */
-                y_dot: number | null;
-                /** @default 0 */
-                theta_dot: number | null;
-            } | null;
-            catch?: components["schemas"]["InterventionCatch"] | null;
-            throw?: components["schemas"]["InterventionThrow"] | null;
-        };
-        InterventionCatch: {
-            /**
-             * @default auto
-             * @enum {string|null}
-             */
-            strategy: "auto" | "bounce_down" | "plan" | "brake" | null;
-            ratio?: number | null;
-            strikes?: number | null;
-            brake?: number | null;
-            weights?: components["schemas"]["InterventionCatchWeights"] | null;
-            /** @default 0.005 */
-            hold_speed: number | null;
-            /** @default 6 */
-            hold: number | null;
-        };
-        InterventionCatchWeights: {
-            state?: {
-                /** @default 1 */
-                x: number | null;
-                /** @default 10 */
-                theta: number | null;
-                /** @default 0.1 */
-                x_dot: number | null;
-                /** @default 0.1 */
-                theta_dot: number | null;
-            } | number[] | null;
-            /** @default 10 */
-            input: number | null;
-        };
-        InterventionThrow: {
-            apex: {
-                height: number;
-                /** @default 0 */
-                theta: number | null;
-            };
-            t?: number | null;
-        };
-        Jacobian: {
-            scene: components["schemas"]["Scene"];
-            model: components["schemas"]["Model"];
-            at: components["schemas"]["JacobianPlace"];
-            period: number;
-            state_order: components["schemas"]["StateComponent"][];
-            matrix: number[][];
-            determinant: number;
-            eigenvalues: components["schemas"]["Eigenvalue"][];
-            residue: number | null;
-            defective: boolean | null;
-            flight_time: number;
-            contact_velocity: number;
-            contact_mode: components["schemas"]["ContactMode"];
-            smooth: boolean;
-            one_sided: components["schemas"]["OneSided"][];
-            notes: string[];
-        };
-        JacobianLastLine: {
-            end: components["schemas"]["Jacobian"];
-        };
-        JacobianLine: components["schemas"]["JacobianRow"] | components["schemas"]["JacobianLastLine"];
-        JacobianPlace: {
-            kind: components["schemas"]["JacobianPlaceKind"];
-            impact: number | null;
-            state: components["schemas"]["JacobianState"];
-        };
-        /** @enum {string} */
-        JacobianPlaceKind: "fixed_point" | "state" | "impact";
-        JacobianRequest: {
-            preset?: components["schemas"]["PresetName"] | null;
-            scene?: components["schemas"]["ScenePatch"] | null;
-            at?: ("fixed_point" | {
-                state: {
-                    /** @default 0 */
-                    x: number | null;
-                    /** @default 0 */
-                    theta: number | null;
-                    /** @default 0 */
-                    x_dot: number | null;
-                    y_dot: number;
-                    /** @default 0 */
-                    theta_dot: number | null;
-                };
-            } | {
-                impact: number;
-            }) | null;
-            /** @default 1 */
-            period: number | null;
-        };
-        JacobianRow: {
-            component: components["schemas"]["StateComponent"];
-            rho_theta?: number;
-            x_dot: number;
-            y_dot: number;
-            rho_theta_dot?: number;
-            x?: number;
-            planned_tilt?: number;
-            planned_normal_velocity?: number;
-            planned_tangential_velocity?: number;
-        };
-        JacobianState: {
-            x?: number;
-            theta: number;
-            x_dot: number;
-            y_dot: number;
-            theta_dot: number | null;
-        };
         JudgedLaw: {
             contact: components["schemas"]["LawContact"];
             gain: components["schemas"]["StateGain"];
@@ -874,40 +512,6 @@ export interface components {
             enough: components["schemas"]["Rung"];
             reason: string;
             rungs: components["schemas"]["LadderRung"][];
-        };
-        LadderEnd: {
-            rung: components["schemas"]["Rung"];
-            enough: components["schemas"]["Rung"];
-            reason: string;
-        };
-        LadderLastLine: {
-            end: components["schemas"]["LadderEnd"];
-        };
-        LadderLine: components["schemas"]["LadderRow"] | components["schemas"]["LadderLastLine"];
-        LadderRequest: {
-            preset?: components["schemas"]["PresetName"] | null;
-            scene?: components["schemas"]["ScenePatch"] | null;
-            /** @default 100 */
-            bounces: number | null;
-            /** @default 0.001 */
-            tolerance: number | null;
-        };
-        LadderRow: {
-            rung: string | null;
-            field: string | null;
-            outcome: components["schemas"]["OutcomeKind"] | null;
-            /** Format: int64 */
-            bounces: number | null;
-            t: number | null;
-            cost: number | null;
-            needed: boolean | null;
-            change_t: number | null;
-            change_x: number | null;
-            change_theta: number | null;
-            change_x_dot: number | null;
-            change_y_dot: number | null;
-            change_theta_dot: number | null;
-            reason: string | null;
         };
         LadderRung: {
             name: components["schemas"]["Rung"];
@@ -959,128 +563,12 @@ export interface components {
             impact: number | null;
             next_strike: components["schemas"]["LiveNextStrike"] | null;
         };
-        /**
-         * @example {
-         *       "type": "catch"
-         *     }
-         * @example {
-         *       "type": "catch",
-         *       "strategy": "bounce_down",
-         *       "ratio": 0.7
-         *     }
-         */
-        LiveCatch: {
-            /** @constant */
-            type: "catch";
-            /**
-             * @default auto
-             * @enum {string|null}
-             */
-            strategy: "auto" | "bounce_down" | "plan" | "brake" | null;
-            ratio?: number | null;
-            strikes?: number | null;
-            brake?: number | null;
-            weights?: components["schemas"]["LiveCatchWeights"] | null;
-            /** @default 0.005 */
-            hold_speed: number | null;
-            /** @default 6 */
-            hold: number | null;
-        };
-        LiveCatchWeights: {
-            state?: {
-                /** @default 1 */
-                x: number | null;
-                /** @default 10 */
-                theta: number | null;
-                /** @default 0.1 */
-                x_dot: number | null;
-                /** @default 0.1 */
-                theta_dot: number | null;
-            } | number[] | null;
-            /** @default 10 */
-            input: number | null;
-        };
         LiveEnd: {
             /** @constant */
             type: "end";
             outcome: components["schemas"]["Outcome"];
             demand: components["schemas"]["Demand"];
             hold_end?: components["schemas"]["HoldEnd"];
-        };
-        LiveFields: {
-            contact?: {
-                restitution?: number;
-                friction?: number;
-                law?: components["schemas"]["ContactLaw"];
-            };
-            table?: {
-                tilt_gain?: number;
-                energy_gain?: number;
-                target_height?: number;
-                energy_measure?: components["schemas"]["TableEnergyMeasure"];
-                energy_law?: components["schemas"]["TableEnergyLaw"];
-                program?: number[];
-                strike?: components["schemas"]["TableStrike"];
-                slide?: components["schemas"]["TableSlide"];
-                feedback?: {
-                    x?: number;
-                    theta?: number;
-                    x_dot?: number;
-                    theta_dot?: number;
-                };
-                assumed_restitution?: number;
-                errors?: {
-                    angle_bias?: number;
-                    tilt_offset?: number;
-                    tilt_gain?: number;
-                    speed?: number;
-                };
-                tilt_rate?: components["schemas"]["TableTiltRate"];
-                pivot?: {
-                    x?: number;
-                    depth?: number;
-                };
-                delay?: number;
-                prediction?: components["schemas"]["TablePrediction"];
-                length?: number;
-                limits?: {
-                    tilt?: number;
-                    tilt_rate?: number;
-                    speed?: number;
-                    stroke?: number;
-                };
-            };
-            topple_angle?: number;
-            "contact.restitution"?: number;
-            "contact.friction"?: number;
-            "contact.law"?: components["schemas"]["ContactLaw"];
-            "table.tilt_gain"?: number;
-            "table.energy_gain"?: number;
-            "table.target_height"?: number;
-            "table.energy_measure"?: components["schemas"]["TableEnergyMeasure"];
-            "table.energy_law"?: components["schemas"]["TableEnergyLaw"];
-            "table.program"?: number[];
-            "table.strike"?: components["schemas"]["TableStrike"];
-            "table.slide"?: components["schemas"]["TableSlide"];
-            "table.feedback.x"?: number;
-            "table.feedback.theta"?: number;
-            "table.feedback.x_dot"?: number;
-            "table.feedback.theta_dot"?: number;
-            "table.assumed_restitution"?: number;
-            "table.errors.angle_bias"?: number;
-            "table.errors.tilt_offset"?: number;
-            "table.errors.tilt_gain"?: number;
-            "table.errors.speed"?: number;
-            "table.tilt_rate"?: components["schemas"]["TableTiltRate"];
-            "table.pivot.x"?: number;
-            "table.pivot.depth"?: number;
-            "table.delay"?: number;
-            "table.prediction"?: components["schemas"]["TablePrediction"];
-            "table.length"?: number;
-            "table.limits.tilt"?: number;
-            "table.limits.tilt_rate"?: number;
-            "table.limits.speed"?: number;
-            "table.limits.stroke"?: number;
         };
         LiveGap: {
             /** @constant */
@@ -1176,22 +664,6 @@ export interface components {
             columns: components["schemas"]["LiveImpactColumns"];
             next_strike: components["schemas"]["LiveNextStrike"] | null;
         };
-        /**
-         * @example {
-         *       "type": "kick",
-         *       "theta_dot": 0.5
-         *     }
-         */
-        LiveKick: {
-            /** @constant */
-            type: "kick";
-            /** @default 0 */
-            x_dot: number | null;
-            /** @default 0 */
-            y_dot: number | null;
-            /** @default 0 */
-            theta_dot: number | null;
-        };
         LiveNextStrike: {
             n: number;
             t: number;
@@ -1201,10 +673,6 @@ export interface components {
             table_velocity: components["schemas"]["TableVelocity"] | null;
             target: components["schemas"]["EnergyTarget"] | null;
         };
-        LivePause: {
-            /** @constant */
-            type: "pause";
-        };
         LiveProblem: {
             /** @constant */
             type: "problem";
@@ -1212,81 +680,6 @@ export interface components {
             title: string;
             detail: string;
             errors: components["schemas"]["ProblemError"][];
-        };
-        LiveRestart: {
-            /** @constant */
-            type: "restart";
-        };
-        LiveResume: {
-            /** @constant */
-            type: "resume";
-        };
-        /**
-         * @example {
-         *       "type": "set",
-         *       "table.tilt_gain": 1.3
-         *     }
-         */
-        LiveSet: {
-            /** @constant */
-            type: "set";
-            "contact.restitution"?: number;
-            "contact.friction"?: number;
-            "contact.law"?: components["schemas"]["ContactLaw"];
-            "table.tilt_gain"?: number;
-            "table.energy_gain"?: number;
-            "table.target_height"?: number;
-            "table.energy_measure"?: components["schemas"]["TableEnergyMeasure"];
-            "table.energy_law"?: components["schemas"]["TableEnergyLaw"];
-            "table.program"?: number[];
-            "table.strike"?: components["schemas"]["TableStrike"];
-            "table.slide"?: components["schemas"]["TableSlide"];
-            "table.feedback.x"?: number;
-            "table.feedback.theta"?: number;
-            "table.feedback.x_dot"?: number;
-            "table.feedback.theta_dot"?: number;
-            "table.assumed_restitution"?: number;
-            "table.errors.angle_bias"?: number;
-            "table.errors.tilt_offset"?: number;
-            "table.errors.tilt_gain"?: number;
-            "table.errors.speed"?: number;
-            "table.tilt_rate"?: components["schemas"]["TableTiltRate"];
-            "table.pivot.x"?: number;
-            "table.pivot.depth"?: number;
-            "table.delay"?: number;
-            "table.prediction"?: components["schemas"]["TablePrediction"];
-            "table.length"?: number;
-            "table.limits.tilt"?: number;
-            "table.limits.tilt_rate"?: number;
-            "table.limits.speed"?: number;
-            "table.limits.stroke"?: number;
-            topple_angle?: number;
-        };
-        LiveSpeed: {
-            /** @constant */
-            type: "speed";
-            value: number;
-        };
-        LiveStep: {
-            /** @constant */
-            type: "step";
-        };
-        /**
-         * @example {
-         *       "type": "throw",
-         *       "apex": {
-         *         "height": 0.3
-         *       }
-         *     }
-         */
-        LiveThrow: {
-            /** @constant */
-            type: "throw";
-            apex: {
-                height: number;
-                /** @default 0 */
-                theta: number | null;
-            };
         };
         /** @enum {string} */
         LossBifurcation: "period_doubling" | "fold" | "pitchfork" | "neimark_sacker";
@@ -1366,11 +759,6 @@ export interface components {
             moves: components["schemas"]["MovingBounce"] | null;
         };
         NumbersOrNull: (number | null)[];
-        OneSided: {
-            contact_mode: components["schemas"]["ContactMode"];
-            matrix: number[][];
-            eigenvalues: components["schemas"]["Eigenvalue"][];
-        };
         OrbitBranch: {
             value: number[];
             theta: number[];
@@ -1422,9 +810,6 @@ export interface components {
             energy_eigenvalue: components["schemas"]["Span"] | null;
             reason: string;
         };
-        Paper: {
-            items: components["schemas"]["PaperItem"][];
-        };
         PaperCheck: {
             quantity: string;
             symbol: string;
@@ -1471,62 +856,6 @@ export interface components {
             changes: components["schemas"]["BranchChange"][] | null;
             notes: string[];
         };
-        PeriodicOrbitsEnd: {
-            changes: components["schemas"]["BranchChange"][] | null;
-            notes: string[];
-        };
-        PeriodicOrbitsLastLine: {
-            end: components["schemas"]["PeriodicOrbitsEnd"];
-        };
-        PeriodicOrbitsLine: components["schemas"]["PeriodicOrbitsRow"] | components["schemas"]["PeriodicOrbitsRow2"] | components["schemas"]["PeriodicOrbitsLastLine"];
-        PeriodicOrbitsRequest: {
-            preset?: components["schemas"]["PresetName"] | null;
-            scene?: components["schemas"]["ScenePatch"] | null;
-            period?: number | null;
-            guess?: {
-                /** @default 0 */
-                theta: number | null;
-                /** @default 0 */
-                x_dot: number | null;
-                y_dot: number;
-                /** @default 0 */
-                theta_dot: number | null;
-            } | null;
-            /** @enum {string|null} */
-            family?: "symmetric" | null;
-            theta?: number | null;
-            sweep?: {
-                field: string;
-                from: number;
-                to: number;
-                /** @default 200 */
-                points: number | null;
-            } | null;
-        };
-        PeriodicOrbitsRow: {
-            theta: number;
-            x_dot: number;
-            y_dot: number;
-            theta_dot: number;
-            x?: number;
-        };
-        PeriodicOrbitsRow2: {
-            value: number;
-            theta: number;
-            residue: number | null;
-            stable: boolean | null;
-            fold: boolean;
-            change: components["schemas"]["BranchChangeKind"] | null;
-            residual: number;
-            energy: number;
-            flight_time: number;
-            first_theta: number;
-            first_x_dot: number;
-            first_y_dot: number;
-            first_theta_dot: number;
-        };
-        /** @enum {string} */
-        Phase: "impact" | "strike" | "hold";
         Precision: {
             scene: components["schemas"]["Scene"];
             model: components["schemas"]["Model"];
@@ -1536,14 +865,6 @@ export interface components {
             points: components["schemas"]["PrecisionPoint"][];
             notes: string[];
         };
-        PrecisionEnd: {
-            reference: components["schemas"]["PrecisionReference"];
-            notes: string[];
-        };
-        PrecisionLastLine: {
-            end: components["schemas"]["PrecisionEnd"];
-        };
-        PrecisionLine: components["schemas"]["PrecisionRow"] | components["schemas"]["Progress"] | components["schemas"]["PrecisionProgressEnd"] | components["schemas"]["PrecisionLastLine"];
         /** @enum {string} */
         PrecisionMethod: "map" | "map_free" | "linear" | "extended" | "adaptive" | "runge_kutta_bisection" | "runge_kutta_secant" | "runge_kutta_step_end" | "sampling" | "time_stepping" | "penalty";
         PrecisionMethodInWords: {
@@ -1574,55 +895,10 @@ export interface components {
             pareto: boolean;
             pareto_evaluations: boolean;
         };
-        PrecisionProgressEnd: {
-            end: components["schemas"]["Precision"];
-            pictures: {
-                time: string;
-                evaluations: string;
-                steps: string;
-            };
-        };
         PrecisionReference: {
             method: components["schemas"]["PrecisionMethod"];
             outcome: components["schemas"]["PrecisionOutcome"];
             rounding: number;
-        };
-        PrecisionRequest: {
-            preset?: components["schemas"]["PresetName"] | null;
-            scene?: components["schemas"]["ScenePatch"] | null;
-            /** @default 100 */
-            bounces: number | null;
-            /**
-             * @default time
-             * @enum {string|null}
-             */
-            axis: "time" | "evaluations" | "steps" | null;
-            methods?: components["schemas"]["PrecisionMethod"][] | null;
-        };
-        PrecisionRow: {
-            method: components["schemas"]["PrecisionMethod"] | null;
-            setting: components["schemas"]["SettingName"] | null;
-            setting_value: number | null;
-            setting_unit: components["schemas"]["SettingUnit"] | null;
-            cost: number | null;
-            cost_lower: number | null;
-            cost_upper: number | null;
-            /** Format: int64 */
-            repeats: number;
-            /** Format: int64 */
-            bounces: number;
-            /** Format: int64 */
-            steps: number;
-            /** Format: int64 */
-            evaluations: number | null;
-            error: number | null;
-            /** Format: int64 */
-            error_at: number | null;
-            outcome: components["schemas"]["PrecisionOutcomeKind"] | null;
-            completed: boolean | null;
-            reason: string | null;
-            pareto: boolean | null;
-            pareto_evaluations: boolean | null;
         };
         PrecisionSetting: {
             name: components["schemas"]["SettingName"];
@@ -1640,51 +916,9 @@ export interface components {
         };
         /** @enum {string} */
         PresetName: "case-1" | "case-2" | "case-2-figure" | "case-3" | "case-4" | "case-5" | "critical-soft" | "critical-hard" | "true-triangle" | "triangle-polygon" | "point-mass" | "still-lossy" | "case-1-noise" | "case-4-noise" | "case-4-total" | "air-table" | "juggling" | "rough-matched" | "rough-feedback" | "rough-noise" | "rough-catch" | "rough-juggling";
-        Presets: {
-            items: components["schemas"]["Preset"][];
-        };
-        Preview: {
-            scene: components["schemas"]["Scene"];
-            title: string;
-            text: string;
-            outcome: components["schemas"]["Outcome"];
-        };
-        PreviewRequest: {
-            preset?: components["schemas"]["PresetName"] | null;
-            scene?: components["schemas"]["ScenePatch"] | null;
-            /** @default [] */
-            interventions: components["schemas"]["Intervention"][] | null;
-            /** @default 1000 */
-            bounces: number | null;
-        };
-        /**
-         * @example {
-         *       "type": "about:blank",
-         *       "title": "Unprocessable Content",
-         *       "status": 422,
-         *       "detail": "1 field is not valid",
-         *       "errors": [
-         *         {
-         *           "pointer": "/scene/table/tilt_gain",
-         *           "detail": "tilt_gain is 5000; it must be from -100 to 100 (no unit)"
-         *         }
-         *       ]
-         *     }
-         */
-        Problem: {
-            type: string;
-            title: string;
-            status: number;
-            detail: string;
-            errors?: components["schemas"]["ProblemError"][];
-            request_id?: string;
-        };
         ProblemError: {
             pointer: string;
             detail: string;
-        };
-        Progress: {
-            progress: components["schemas"]["WorkDone"];
         };
         Quantity: {
             quantity: components["schemas"]["QuantityName"];
@@ -1697,12 +931,6 @@ export interface components {
         };
         /** @enum {string} */
         QuantityName: "tilt_gain.critical" | "body.radius_of_gyration" | "fixed_point.y_dot" | "angle_eigenvalue.im" | "jacobian.determinant" | "theta.bounded" | "release.theta_dot" | "energy.target" | "energy_gain.upper" | "energy_gain.eigenvalue" | "gravity.in_plane" | "energy.settled" | "vertical_energy.settled" | "friction.helped" | "theta.growth" | "angle_eigenvalue.critical" | "tilt_gain.bounded" | "angle_eigenvector.second" | "settled.theta_dot";
-        ReachedApex: {
-            t: number;
-            x: number;
-            y: number;
-            theta: number;
-        };
         Region: {
             scene: components["schemas"]["Scene"];
             bounces: number;
@@ -1753,64 +981,6 @@ export interface components {
         };
         /** @enum {string} */
         RegionQuantity: "survival" | "max_theta" | "residue" | "spectral_radius" | "caught" | "rest_time";
-        RegionRequest: {
-            preset?: components["schemas"]["PresetName"] | null;
-            scene?: components["schemas"]["ScenePatch"] | null;
-            x: {
-                field: string;
-                from: number;
-                to: number;
-                count: number;
-            };
-            y: {
-                field: string;
-                from: number;
-                to: number;
-                count: number;
-            };
-            /** @default 1000 */
-            bounces: number | null;
-            /**
-             * @default survival
-             * @enum {string|null}
-             */
-            quantity: "survival" | "max_theta" | "residue" | "spectral_radius" | "caught" | "rest_time" | null;
-            catch?: components["schemas"]["RegionRequestCatch"] | null;
-            tile?: components["schemas"]["RegionRequestTile"] | null;
-        };
-        RegionRequestCatch: {
-            /**
-             * @default auto
-             * @enum {string|null}
-             */
-            strategy: "auto" | "bounce_down" | "plan" | "brake" | null;
-            ratio?: number | null;
-            strikes?: number | null;
-            brake?: number | null;
-            weights?: components["schemas"]["RegionRequestCatchWeights"] | null;
-            /** @default 0.005 */
-            hold_speed: number | null;
-            /** @default 6 */
-            hold: number | null;
-        };
-        RegionRequestCatchWeights: {
-            state?: {
-                /** @default 1 */
-                x: number | null;
-                /** @default 10 */
-                theta: number | null;
-                /** @default 0.1 */
-                x_dot: number | null;
-                /** @default 0.1 */
-                theta_dot: number | null;
-            } | number[] | null;
-            /** @default 10 */
-            input: number | null;
-        };
-        RegionRequestTile: {
-            index: number;
-            of: number;
-        };
         RegionRow: {
             row: number;
             y: number;
@@ -2049,104 +1219,6 @@ export interface components {
             budget?: components["schemas"]["Budget"];
             notes: string[];
         };
-        StabilityEnd: {
-            notes: string[];
-        };
-        StabilityLastLine: {
-            end: components["schemas"]["StabilityEnd"];
-        };
-        StabilityLine: components["schemas"]["StabilityRow"] | components["schemas"]["StabilityLastLine"];
-        StabilityRequest: {
-            preset?: components["schemas"]["PresetName"] | null;
-            scene?: components["schemas"]["ScenePatch"] | null;
-            /** @default 2000 */
-            bounces: number | null;
-            /** @default false */
-            basin: boolean | null;
-            /** @default false */
-            budget: boolean | null;
-            /** @default false */
-            release_margins: boolean | null;
-            tolerances?: {
-                field: string;
-                tolerance: number;
-            }[] | null;
-        };
-        StabilityRow: {
-            verdict: string;
-            verdict_code: components["schemas"]["VerdictCode"];
-            decided_by: components["schemas"]["VerdictDecidedBy"];
-            reason: string;
-            agree: boolean | null;
-            linear_kind: components["schemas"]["LinearKind"] | null;
-            residue: number | null;
-            rotation: number | null;
-            spectral_radius: number | null;
-            tilt_gain: number | null;
-            energy_gain: number | null;
-            boundary_coefficient: number | null;
-            boundary_kind: components["schemas"]["LossKind"] | null;
-            drift_speed: number | null;
-            outcome: components["schemas"]["OutcomeKind"] | null;
-            /** Format: int64 */
-            bounces: number;
-            t: number | null;
-            max_theta: number | null;
-            energy_eigenvalue: number | null;
-            fixed_point_y_dot: number | null;
-            fixed_point_flight_time: number | null;
-            rotation_number_measured: number | null;
-            rotation_number_small: number | null;
-            /** Format: int64 */
-            resonance_p: number | null;
-            /** Format: int64 */
-            resonance_q: number | null;
-            resonance_distance: number | null;
-            chaos_indicator: number | null;
-            chaotic: boolean | null;
-            /** Format: int64 */
-            predictable_bounces: number | null;
-            basin_theta: number | null;
-            basin_unbroken: number | null;
-            lyapunov_coefficient: number | null;
-            lyapunov_kind: components["schemas"]["LyapunovKind"] | null;
-            /** Format: int64 */
-            escape_bounces: number | null;
-            tilt_gain_below_limit: number | null;
-            tilt_gain_above_limit: number | null;
-            energy_gain_below_limit: number | null;
-            energy_gain_above_limit: number | null;
-            feedback_below_limit: number | null;
-            feedback_above_limit: number | null;
-            tilt_gain_below_margin: number | null;
-            tilt_gain_above_margin: number | null;
-            energy_gain_below_margin: number | null;
-            energy_gain_above_margin: number | null;
-            feedback_below_margin: number | null;
-            feedback_above_margin: number | null;
-            release_tilt_gain_below_limit?: number | null;
-            release_tilt_gain_above_limit?: number | null;
-            release_feedback_below_limit?: number | null;
-            release_feedback_above_limit?: number | null;
-            release_tilt_gain_below_margin?: number | null;
-            release_tilt_gain_above_margin?: number | null;
-            release_feedback_below_margin?: number | null;
-            release_feedback_above_margin?: number | null;
-            tilt_gain_below_least?: number | null;
-            tilt_gain_above_least?: number | null;
-            energy_gain_below_least?: number | null;
-            energy_gain_above_least?: number | null;
-            feedback_below_least?: number | null;
-            feedback_above_least?: number | null;
-            over_tolerances_holds?: boolean | null;
-            over_tolerances_apex_height_least?: number | null;
-            over_tolerances_apex_height_most?: number | null;
-            over_tolerances_energy_eigenvalue_least?: number | null;
-            over_tolerances_energy_eigenvalue_most?: number | null;
-            over_tolerances_worst?: number[] | null;
-        };
-        /** @enum {string} */
-        StateComponent: "rho_theta" | "x_dot" | "y_dot" | "rho_theta_dot" | "x" | "planned_tilt" | "planned_normal_velocity" | "planned_tangential_velocity";
         StateGain: {
             x: number;
             theta: number;
@@ -2218,131 +1290,6 @@ export interface components {
             x: number;
             y: number;
         };
-        Throw: {
-            scene: components["schemas"]["Scene"];
-            derived: components["schemas"]["Derived"];
-            model: components["schemas"]["Model"];
-            t: number;
-            before: components["schemas"]["ThrownState"];
-            alpha: number;
-            table_velocity: number;
-            table_velocity_tangential: number;
-            impulse_normal: number;
-            impulse_tangential: number;
-            contact_mode: components["schemas"]["ContactMode"];
-            after: components["schemas"]["ThrownState"];
-            apex: components["schemas"]["ReachedApex"];
-            landing: components["schemas"]["ThrowLanding"] | null;
-            residual: number;
-            iterations: number;
-            demand: components["schemas"]["Demand"];
-            catch: components["schemas"]["Catch"] | null;
-            notes: string[];
-        };
-        ThrowEnd: {
-            scene: components["schemas"]["Scene"];
-            demand: components["schemas"]["Demand"];
-            notes: string[];
-        };
-        ThrowLanding: {
-            t: number;
-            x: number;
-            theta: number;
-            x_dot: number;
-            y_dot: number;
-            theta_dot: number;
-        };
-        ThrowLastLine: {
-            end: components["schemas"]["ThrowEnd"];
-        };
-        ThrowLine: components["schemas"]["ThrowRow"] | components["schemas"]["ThrowLastLine"];
-        ThrowRequest: {
-            preset?: components["schemas"]["PresetName"] | null;
-            scene?: components["schemas"]["ScenePatch"] | null;
-            apex: {
-                height: number;
-                /** @default 0 */
-                theta: number | null;
-            };
-            impact?: number | null;
-            state?: {
-                /** @default 0 */
-                x: number | null;
-                /** @default 0 */
-                theta: number | null;
-                /** @default 0 */
-                x_dot: number | null;
-                /** @default 0 */
-                y_dot: number | null;
-                /** @default 0 */
-                theta_dot: number | null;
-            } | null;
-            catch?: components["schemas"]["ThrowRequestCatch"] | null;
-        };
-        ThrowRequestCatch: {
-            /**
-             * @default auto
-             * @enum {string|null}
-             */
-            strategy: "auto" | "bounce_down" | "plan" | "brake" | null;
-            ratio?: number | null;
-            strikes?: number | null;
-            brake?: number | null;
-            weights?: components["schemas"]["ThrowRequestCatchWeights"] | null;
-            /** @default 0.005 */
-            hold_speed: number | null;
-            /** @default 6 */
-            hold: number | null;
-            /** @default 200 */
-            hold_samples: number | null;
-        };
-        ThrowRequestCatchWeights: {
-            state?: {
-                /** @default 1 */
-                x: number | null;
-                /** @default 10 */
-                theta: number | null;
-                /** @default 0.1 */
-                x_dot: number | null;
-                /** @default 0.1 */
-                theta_dot: number | null;
-            } | number[] | null;
-            /** @default 10 */
-            input: number | null;
-        };
-        ThrowRow: {
-            t: number;
-            x: number;
-            theta: number;
-            x_dot: number;
-            y_dot: number;
-            theta_dot: number;
-            alpha: number;
-            table_velocity: number;
-            table_velocity_tangential: number;
-            impulse_normal: number;
-            impulse_tangential: number;
-            contact_mode: components["schemas"]["ContactMode"] | null;
-            x_dot_after: number;
-            y_dot_after: number;
-            theta_dot_after: number;
-            apex_t: number;
-            apex_x: number;
-            apex_y: number;
-            apex_theta: number;
-            landing_t: number | null;
-            landing_x: number | null;
-            landing_theta: number | null;
-            residual: number;
-            caught: components["schemas"]["CatchOutcomeKind"] | null;
-        };
-        ThrownState: {
-            x: number;
-            theta: number;
-            x_dot: number;
-            y_dot: number;
-            theta_dot: number;
-        };
         Tile: {
             index: number;
             of: number;
@@ -2362,91 +1309,6 @@ export interface components {
             nearest_vertex?: components["schemas"]["NearestVertex"];
             notes: string[];
         };
-        TrajectoryEnd: {
-            outcome: components["schemas"]["Outcome"];
-            method: components["schemas"]["MethodChoice"];
-            predictable_bounces: number | null;
-            hold_end?: components["schemas"]["HoldEnd"];
-            demand: components["schemas"]["Demand"];
-            nearest_vertex?: components["schemas"]["NearestVertex"];
-            notes: string[];
-        };
-        TrajectoryLastLine: {
-            end: components["schemas"]["TrajectoryEnd"];
-        };
-        TrajectoryLine: components["schemas"]["TrajectoryRow"] | components["schemas"]["TrajectoryRow2"] | components["schemas"]["TrajectoryLastLine"];
-        TrajectoryRequest: {
-            preset?: components["schemas"]["PresetName"] | null;
-            scene?: components["schemas"]["ScenePatch"] | null;
-            /** @default [] */
-            interventions: components["schemas"]["Intervention"][] | null;
-            /** @default 0 */
-            hold: number | null;
-            /** @default 100 */
-            bounces: number | null;
-            /** @default 0 */
-            samples_per_flight: number | null;
-            /**
-             * @default auto
-             * @enum {string|null}
-             */
-            method: "auto" | "linear" | "map" | "extended" | null;
-            tolerance?: number | null;
-            /** Format: int64 */
-            epoch_ms?: number | null;
-        };
-        TrajectoryRow: {
-            /** Format: int64 */
-            n: number;
-            /** Format: int64 */
-            time_ms?: number;
-            t: components["schemas"]["Decimal"];
-            x: components["schemas"]["Decimal"];
-            theta: components["schemas"]["Decimal"];
-            x_dot: components["schemas"]["Decimal"];
-            y_dot: components["schemas"]["Decimal"];
-            theta_dot: components["schemas"]["Decimal"] | null;
-            alpha: components["schemas"]["Decimal"];
-            table_velocity_x: components["schemas"]["Decimal"] | null;
-            table_velocity_y: components["schemas"]["Decimal"] | null;
-            impulse_normal: components["schemas"]["Decimal"] | null;
-            impulse_tangential: number | null;
-            contact_mode: components["schemas"]["ContactMode"] | null;
-            energy: components["schemas"]["Decimal"];
-            flight_time: components["schemas"]["Decimal"] | null;
-            contact_velocity: components["schemas"]["Decimal"];
-            clearance: number;
-            error_estimate: number | null;
-        };
-        TrajectoryRow2: {
-            phase: components["schemas"]["Phase"];
-            /** Format: int64 */
-            n: number | null;
-            /** Format: int64 */
-            time_ms?: number | null;
-            t: components["schemas"]["Decimal"];
-            x: components["schemas"]["Decimal"];
-            theta: components["schemas"]["Decimal"];
-            x_dot: components["schemas"]["Decimal"];
-            y_dot: components["schemas"]["Decimal"] | null;
-            theta_dot: components["schemas"]["Decimal"] | null;
-            alpha: components["schemas"]["Decimal"];
-            table_velocity_x: components["schemas"]["Decimal"] | null;
-            table_velocity_y: components["schemas"]["Decimal"] | null;
-            impulse_normal: components["schemas"]["Decimal"] | null;
-            impulse_tangential: number | null;
-            contact_mode: components["schemas"]["ContactMode"] | null;
-            energy: components["schemas"]["Decimal"] | null;
-            flight_time: components["schemas"]["Decimal"] | null;
-            contact_velocity: components["schemas"]["Decimal"] | null;
-            clearance: number | null;
-            error_estimate: number | null;
-            normal_force: number | null;
-            tangential_force: number | null;
-            table_x: number | null;
-            table_y: number | null;
-            table_y_dot: number | null;
-        };
         UprightWithin: {
             theta_1mrad: number | null;
             x_1mm: number | null;
@@ -2465,10 +1327,6 @@ export interface components {
             state: components["schemas"]["ByState"];
             input: number;
         };
-        WorkDone: {
-            done: number;
-            of: number;
-        };
     };
     responses: never;
     parameters: never;
@@ -2479,8 +1337,6 @@ export interface components {
 export type AngleQuantiles = components['schemas']['AngleQuantiles'];
 export type AnyOutcomeKind = components['schemas']['AnyOutcomeKind'];
 export type Basin = components['schemas']['Basin'];
-export type BatchEnd = components['schemas']['BatchEnd'];
-export type BatchLine = components['schemas']['BatchLine'];
 export type BooleansOrNull = components['schemas']['BooleansOrNull'];
 export type BounceState = components['schemas']['BounceState'];
 export type Boundary = components['schemas']['Boundary'];
@@ -2497,16 +1353,10 @@ export type Catch = components['schemas']['Catch'];
 export type CatchCandidate = components['schemas']['CatchCandidate'];
 export type CatchCounts = components['schemas']['CatchCounts'];
 export type CatchDemand = components['schemas']['CatchDemand'];
-export type CatchEnd = components['schemas']['CatchEnd'];
-export type CatchLastLine = components['schemas']['CatchLastLine'];
-export type CatchLine = components['schemas']['CatchLine'];
 export type CatchOutcome = components['schemas']['CatchOutcome'];
 export type CatchOutcomeKind = components['schemas']['CatchOutcomeKind'];
 export type CatchReach = components['schemas']['CatchReach'];
 export type CatchReason = components['schemas']['CatchReason'];
-export type CatchRequest = components['schemas']['CatchRequest'];
-export type CatchRequestWeights = components['schemas']['CatchRequestWeights'];
-export type CatchRow = components['schemas']['CatchRow'];
 export type CatchStrategy = components['schemas']['CatchStrategy'];
 export type CatchUsed = components['schemas']['CatchUsed'];
 export type CellCounts = components['schemas']['CellCounts'];
@@ -2517,13 +1367,7 @@ export type ContactLaw = components['schemas']['ContactLaw'];
 export type ContactMode = components['schemas']['ContactMode'];
 export type ContactModes = components['schemas']['ContactModes'];
 export type Controller = components['schemas']['Controller'];
-export type ControllerEnd = components['schemas']['ControllerEnd'];
 export type ControllerFixedPoint = components['schemas']['ControllerFixedPoint'];
-export type ControllerLastLine = components['schemas']['ControllerLastLine'];
-export type ControllerLine = components['schemas']['ControllerLine'];
-export type ControllerRequest = components['schemas']['ControllerRequest'];
-export type ControllerRequestWeights = components['schemas']['ControllerRequestWeights'];
-export type ControllerRow = components['schemas']['ControllerRow'];
 export type CountRange = components['schemas']['CountRange'];
 export type Decimal = components['schemas']['Decimal'];
 export type DecimalOrNull = components['schemas']['DecimalOrNull'];
@@ -2535,72 +1379,37 @@ export type Eigenvalue = components['schemas']['Eigenvalue'];
 export type EnergyTarget = components['schemas']['EnergyTarget'];
 export type Ensemble = components['schemas']['Ensemble'];
 export type EnsembleCounts = components['schemas']['EnsembleCounts'];
-export type EnsembleLastLine = components['schemas']['EnsembleLastLine'];
-export type EnsembleLine = components['schemas']['EnsembleLine'];
-export type EnsembleProgressEnd = components['schemas']['EnsembleProgressEnd'];
-export type EnsembleRequest = components['schemas']['EnsembleRequest'];
-export type EnsembleRequestTile = components['schemas']['EnsembleRequestTile'];
-export type EnsembleRow = components['schemas']['EnsembleRow'];
-export type EnsembleSummary = components['schemas']['EnsembleSummary'];
 export type EnsembleTile = components['schemas']['EnsembleTile'];
 export type Failure = components['schemas']['Failure'];
 export type FailureClaim = components['schemas']['FailureClaim'];
 export type FailureName = components['schemas']['FailureName'];
 export type FailureTruth = components['schemas']['FailureTruth'];
-export type Failures = components['schemas']['Failures'];
 export type Field = components['schemas']['Field'];
 export type FieldDefault = components['schemas']['FieldDefault'];
 export type FieldKindName = components['schemas']['FieldKindName'];
 export type FieldTolerance = components['schemas']['FieldTolerance'];
 export type FieldValue = components['schemas']['FieldValue'];
-export type Fields = components['schemas']['Fields'];
 export type Fit = components['schemas']['Fit'];
 export type FitDeviations = components['schemas']['FitDeviations'];
-export type FitEnd = components['schemas']['FitEnd'];
 export type FitEstimate = components['schemas']['FitEstimate'];
-export type FitLastLine = components['schemas']['FitLastLine'];
-export type FitLine = components['schemas']['FitLine'];
-export type FitPictures = components['schemas']['FitPictures'];
 export type FitProgress = components['schemas']['FitProgress'];
-export type FitProgressEnd = components['schemas']['FitProgressEnd'];
-export type FitProgressFailure = components['schemas']['FitProgressFailure'];
 export type FitQuality = components['schemas']['FitQuality'];
 export type FitQualityKind = components['schemas']['FitQualityKind'];
 export type FitRequest = components['schemas']['FitRequest'];
 export type FitResiduals = components['schemas']['FitResiduals'];
-export type FitRow = components['schemas']['FitRow'];
 export type FitStability = components['schemas']['FitStability'];
 export type FitStageName = components['schemas']['FitStageName'];
 export type FitStep = components['schemas']['FitStep'];
 export type FixedPoint = components['schemas']['FixedPoint'];
 export type Flights = components['schemas']['Flights'];
 export type Forced = components['schemas']['Forced'];
-export type Health = components['schemas']['Health'];
-export type HealthStatus = components['schemas']['HealthStatus'];
 export type HoldContact = components['schemas']['HoldContact'];
 export type HoldEnd = components['schemas']['HoldEnd'];
 export type HoldEndKind = components['schemas']['HoldEndKind'];
 export type HoldSamples = components['schemas']['HoldSamples'];
 export type Impacts = components['schemas']['Impacts'];
-export type Intervention = components['schemas']['Intervention'];
-export type InterventionCatch = components['schemas']['InterventionCatch'];
-export type InterventionCatchWeights = components['schemas']['InterventionCatchWeights'];
-export type InterventionThrow = components['schemas']['InterventionThrow'];
-export type Jacobian = components['schemas']['Jacobian'];
-export type JacobianLastLine = components['schemas']['JacobianLastLine'];
-export type JacobianLine = components['schemas']['JacobianLine'];
-export type JacobianPlace = components['schemas']['JacobianPlace'];
-export type JacobianPlaceKind = components['schemas']['JacobianPlaceKind'];
-export type JacobianRequest = components['schemas']['JacobianRequest'];
-export type JacobianRow = components['schemas']['JacobianRow'];
-export type JacobianState = components['schemas']['JacobianState'];
 export type JudgedLaw = components['schemas']['JudgedLaw'];
 export type Ladder = components['schemas']['Ladder'];
-export type LadderEnd = components['schemas']['LadderEnd'];
-export type LadderLastLine = components['schemas']['LadderLastLine'];
-export type LadderLine = components['schemas']['LadderLine'];
-export type LadderRequest = components['schemas']['LadderRequest'];
-export type LadderRow = components['schemas']['LadderRow'];
 export type LadderRung = components['schemas']['LadderRung'];
 export type LargestDifference = components['schemas']['LargestDifference'];
 export type LawContact = components['schemas']['LawContact'];
@@ -2610,26 +1419,15 @@ export type Linear = components['schemas']['Linear'];
 export type LinearKind = components['schemas']['LinearKind'];
 export type LinearModel = components['schemas']['LinearModel'];
 export type LiveAck = components['schemas']['LiveAck'];
-export type LiveCatch = components['schemas']['LiveCatch'];
-export type LiveCatchWeights = components['schemas']['LiveCatchWeights'];
 export type LiveEnd = components['schemas']['LiveEnd'];
-export type LiveFields = components['schemas']['LiveFields'];
 export type LiveGap = components['schemas']['LiveGap'];
 export type LiveHello = components['schemas']['LiveHello'];
 export type LiveHold = components['schemas']['LiveHold'];
 export type LiveImpact = components['schemas']['LiveImpact'];
 export type LiveImpactColumns = components['schemas']['LiveImpactColumns'];
 export type LiveImpacts = components['schemas']['LiveImpacts'];
-export type LiveKick = components['schemas']['LiveKick'];
 export type LiveNextStrike = components['schemas']['LiveNextStrike'];
-export type LivePause = components['schemas']['LivePause'];
 export type LiveProblem = components['schemas']['LiveProblem'];
-export type LiveRestart = components['schemas']['LiveRestart'];
-export type LiveResume = components['schemas']['LiveResume'];
-export type LiveSet = components['schemas']['LiveSet'];
-export type LiveSpeed = components['schemas']['LiveSpeed'];
-export type LiveStep = components['schemas']['LiveStep'];
-export type LiveThrow = components['schemas']['LiveThrow'];
 export type LossBifurcation = components['schemas']['LossBifurcation'];
 export type LossField = components['schemas']['LossField'];
 export type LossKind = components['schemas']['LossKind'];
@@ -2649,50 +1447,29 @@ export type NoiseModel = components['schemas']['NoiseModel'];
 export type NonlinearRun = components['schemas']['NonlinearRun'];
 export type NothingRepeats = components['schemas']['NothingRepeats'];
 export type NumbersOrNull = components['schemas']['NumbersOrNull'];
-export type OneSided = components['schemas']['OneSided'];
 export type OrbitBranch = components['schemas']['OrbitBranch'];
 export type OrbitStates = components['schemas']['OrbitStates'];
 export type OrbitSweep = components['schemas']['OrbitSweep'];
 export type Outcome = components['schemas']['Outcome'];
 export type OutcomeKind = components['schemas']['OutcomeKind'];
 export type OverTolerances = components['schemas']['OverTolerances'];
-export type Paper = components['schemas']['Paper'];
 export type PaperCheck = components['schemas']['PaperCheck'];
 export type PaperItem = components['schemas']['PaperItem'];
 export type PaperItemKind = components['schemas']['PaperItemKind'];
 export type PeriodicOrbits = components['schemas']['PeriodicOrbits'];
-export type PeriodicOrbitsEnd = components['schemas']['PeriodicOrbitsEnd'];
-export type PeriodicOrbitsLastLine = components['schemas']['PeriodicOrbitsLastLine'];
-export type PeriodicOrbitsLine = components['schemas']['PeriodicOrbitsLine'];
-export type PeriodicOrbitsRequest = components['schemas']['PeriodicOrbitsRequest'];
-export type PeriodicOrbitsRow = components['schemas']['PeriodicOrbitsRow'];
-export type PeriodicOrbitsRow2 = components['schemas']['PeriodicOrbitsRow2'];
-export type Phase = components['schemas']['Phase'];
 export type Precision = components['schemas']['Precision'];
-export type PrecisionEnd = components['schemas']['PrecisionEnd'];
-export type PrecisionLastLine = components['schemas']['PrecisionLastLine'];
-export type PrecisionLine = components['schemas']['PrecisionLine'];
 export type PrecisionMethod = components['schemas']['PrecisionMethod'];
 export type PrecisionMethodInWords = components['schemas']['PrecisionMethodInWords'];
 export type PrecisionOutcome = components['schemas']['PrecisionOutcome'];
 export type PrecisionOutcomeKind = components['schemas']['PrecisionOutcomeKind'];
 export type PrecisionPoint = components['schemas']['PrecisionPoint'];
-export type PrecisionProgressEnd = components['schemas']['PrecisionProgressEnd'];
 export type PrecisionReference = components['schemas']['PrecisionReference'];
-export type PrecisionRequest = components['schemas']['PrecisionRequest'];
-export type PrecisionRow = components['schemas']['PrecisionRow'];
 export type PrecisionSetting = components['schemas']['PrecisionSetting'];
 export type Preset = components['schemas']['Preset'];
 export type PresetName = components['schemas']['PresetName'];
-export type Presets = components['schemas']['Presets'];
-export type Preview = components['schemas']['Preview'];
-export type PreviewRequest = components['schemas']['PreviewRequest'];
-export type Problem = components['schemas']['Problem'];
 export type ProblemError = components['schemas']['ProblemError'];
-export type Progress = components['schemas']['Progress'];
 export type Quantity = components['schemas']['Quantity'];
 export type QuantityName = components['schemas']['QuantityName'];
-export type ReachedApex = components['schemas']['ReachedApex'];
 export type Region = components['schemas']['Region'];
 export type RegionAxis = components['schemas']['RegionAxis'];
 export type RegionCounts = components['schemas']['RegionCounts'];
@@ -2701,10 +1478,6 @@ export type RegionLastLine = components['schemas']['RegionLastLine'];
 export type RegionLine = components['schemas']['RegionLine'];
 export type RegionLinks = components['schemas']['RegionLinks'];
 export type RegionQuantity = components['schemas']['RegionQuantity'];
-export type RegionRequest = components['schemas']['RegionRequest'];
-export type RegionRequestCatch = components['schemas']['RegionRequestCatch'];
-export type RegionRequestCatchWeights = components['schemas']['RegionRequestCatchWeights'];
-export type RegionRequestTile = components['schemas']['RegionRequestTile'];
 export type RegionRow = components['schemas']['RegionRow'];
 export type Resonance = components['schemas']['Resonance'];
 export type RotationNumber = components['schemas']['RotationNumber'];
@@ -2718,12 +1491,6 @@ export type SettingUnit = components['schemas']['SettingUnit'];
 export type Span = components['schemas']['Span'];
 export type SpectralMargin = components['schemas']['SpectralMargin'];
 export type Stability = components['schemas']['Stability'];
-export type StabilityEnd = components['schemas']['StabilityEnd'];
-export type StabilityLastLine = components['schemas']['StabilityLastLine'];
-export type StabilityLine = components['schemas']['StabilityLine'];
-export type StabilityRequest = components['schemas']['StabilityRequest'];
-export type StabilityRow = components['schemas']['StabilityRow'];
-export type StateComponent = components['schemas']['StateComponent'];
 export type StateGain = components['schemas']['StateGain'];
 export type StateName = components['schemas']['StateName'];
 export type SteadyDrift = components['schemas']['SteadyDrift'];
@@ -2738,29 +1505,12 @@ export type TableSlide = components['schemas']['TableSlide'];
 export type TableStrike = components['schemas']['TableStrike'];
 export type TableTiltRate = components['schemas']['TableTiltRate'];
 export type TableVelocity = components['schemas']['TableVelocity'];
-export type Throw = components['schemas']['Throw'];
-export type ThrowEnd = components['schemas']['ThrowEnd'];
-export type ThrowLanding = components['schemas']['ThrowLanding'];
-export type ThrowLastLine = components['schemas']['ThrowLastLine'];
-export type ThrowLine = components['schemas']['ThrowLine'];
-export type ThrowRequest = components['schemas']['ThrowRequest'];
-export type ThrowRequestCatch = components['schemas']['ThrowRequestCatch'];
-export type ThrowRequestCatchWeights = components['schemas']['ThrowRequestCatchWeights'];
-export type ThrowRow = components['schemas']['ThrowRow'];
-export type ThrownState = components['schemas']['ThrownState'];
 export type Tile = components['schemas']['Tile'];
 export type Trajectory = components['schemas']['Trajectory'];
-export type TrajectoryEnd = components['schemas']['TrajectoryEnd'];
-export type TrajectoryLastLine = components['schemas']['TrajectoryLastLine'];
-export type TrajectoryLine = components['schemas']['TrajectoryLine'];
-export type TrajectoryRequest = components['schemas']['TrajectoryRequest'];
-export type TrajectoryRow = components['schemas']['TrajectoryRow'];
-export type TrajectoryRow2 = components['schemas']['TrajectoryRow2'];
 export type UprightWithin = components['schemas']['UprightWithin'];
 export type Verdict = components['schemas']['Verdict'];
 export type VerdictCode = components['schemas']['VerdictCode'];
 export type VerdictDecidedBy = components['schemas']['VerdictDecidedBy'];
 export type Weights = components['schemas']['Weights'];
-export type WorkDone = components['schemas']['WorkDone'];
 export type $defs = Record<string, never>;
 export type operations = Record<string, never>;
