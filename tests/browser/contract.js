@@ -18,9 +18,9 @@ function imported() {
   return [...imports].flatMap(([, one, several]) => one ?? several.split(', ').map((name) => name.split(' ')[0]));
 }
 
-/** The schemas that the page uses, and those in them, without prose: that is in the contract. */
-function schemasOf({ openapi, info, components: { schemas } }) {
-  const used = new Set(imported());
+/** The schemas that are named, and those in them, without prose: that is in the contract. */
+function schemasOf({ openapi, info, components: { schemas } }, names) {
+  const used = new Set(names);
   const bare = (node) => {
     if (Array.isArray(node)) return node.map(bare);
     if (node === null || typeof node !== 'object') return node;
@@ -37,9 +37,12 @@ function schemasOf({ openapi, info, components: { schemas } }) {
 }
 
 const contract = load(readFileSync(new URL('../../openapi.yaml', import.meta.url), 'utf8'));
+const names = imported();
+const options = { silent: true, rootTypes: true, rootTypesNoSchemaPrefix: true };
+const types = astToString(await openapiTS(schemasOf(contract, names), options));
+// The others have their names within these alone.
 const text =
-  HEAD +
-  astToString(await openapiTS(schemasOf(contract), { silent: true, rootTypes: true, rootTypesNoSchemaPrefix: true }));
+  HEAD + types.replace(/^export type (\w+) = components.*\n/gm, (line, name) => (names.includes(name) ? line : ''));
 if (!process.argv.includes('--check')) writeFileSync(FILE, text);
 else if (readFileSync(FILE, 'utf8') !== text) {
   console.error('contract.d.ts is not what openapi.yaml gives: run node tests/browser/contract.js');
