@@ -70,7 +70,7 @@ interface Drag {
   /** True where a drag or a click may begin. */
   press(place: Place, event: PointerEvent): boolean | void;
   /** On from where it was pressed. */
-  drag(place: Place, from: Place, begins: boolean): void;
+  drag(place: Place, from: Place, begins: boolean, event: PointerEvent): void;
   /** After a drag or a click. */
   release?(from: Place, dragged: boolean, event: PointerEvent): void;
   /** The browser has taken the pointer, as it does where a finger scrolls. */

@@ -30,7 +30,7 @@ export function drags(element, box, slip, { press, drag, release, cancel, hover 
     const place = placeIn(box, event);
     if (pressed === null) return hover?.(place, event);
     if (!dragged && Math.hypot(place.x - pressed.x, place.y - pressed.y) < slip) return;
-    drag(place, pressed, !dragged);
+    drag(place, pressed, !dragged, event);
     dragged = true;
   });
   element.addEventListener('pointerup', (event) => {
@@ -39,6 +39,10 @@ export function drags(element, box, slip, { press, drag, release, cancel, hover 
     if (from) release?.(from, dragged, event);
   });
   element.addEventListener('pointercancel', end);
+  // The end of a drag is no click, which would focus the field of a label.
+  element.addEventListener('click', (event) => {
+    if (dragged) event.preventDefault();
+  });
   return end;
 }
 

@@ -4,6 +4,7 @@ import { remember, remembered } from '../api/remembered.js';
 import { pathOf, same, valueAt } from '../api/scene-fields.js';
 import { idOf, limitsOf, missing, textOf, told, typed as read, usual } from '../api/settings.js';
 import { debounce } from '../dom/debounce.js';
+import { drags } from '../dom/drag.js';
 import { commits } from '../dom/number-input.js';
 import { number, number as shortNumber, quantity, unitAfter } from '../dom/numbers.js';
 import { parse, unitsFor } from '../dom/typed-number.js';
@@ -571,36 +572,28 @@ const STEP_PX = 3;
 
 /** Drags a label left and right to change its number. @param {HTMLElement} label @param {Form} form @param {Field} field */
 function dragLabel(label, form, field) {
-  /** @type {{x: number, before: unknown, from: number, steps: number} | null} */
-  let held = null;
-  let dragged = false;
-  const move = (/** @type {NonNullable<typeof held>} */ { before, from, steps }, /** @type {boolean} */ final) =>
-    form.set(field.field, steps === 0 ? before : moved(field, from, steps), final);
-  label.addEventListener('pointerdown', ({ button, clientX: x }) => {
-    const before = form.typed.value(field);
-    const from = before ?? usual(field);
-    dragged = false;
-    held = button === 0 && typeof from === 'number' && !form.typed.isOff(field) ? { x, before, from, steps: 0 } : null;
-  });
-  label.addEventListener('pointermove', ({ clientX, pointerId, shiftKey }) => {
-    if (!held) return;
-    const way = clientX - held.x;
-    if (!dragged && Math.abs(way) < LEAST_PX) return;
-    if (!dragged) label.setPointerCapture(pointerId);
-    dragged = true;
-    held.steps = Math.round(way / STEP_PX) * (shiftKey ? 10 : 1);
-    move(held, false);
-  });
-  for (const event of ['pointerup', 'pointercancel'])
-    label.addEventListener(event, () => {
-      // A finger that scrolls the column away takes the value back with it.
-      if (held && event === 'pointercancel') held.steps = 0;
-      if (held && dragged) move(held, true);
-      held = null;
-    });
-  // The end of a drag is no click, which would focus the field.
-  label.addEventListener('click', (event) => {
-    if (dragged) event.preventDefault();
+  /** The value before, and how far it is moved. @type {unknown} */
+  let before;
+  let steps = 0;
+  const from = () => before ?? usual(field);
+  const move = (/** @type {boolean} */ final) =>
+    form.set(field.field, steps === 0 ? before : moved(field, Number(from()), steps), final);
+  drags(label, label, LEAST_PX, {
+    press: () => {
+      before = form.typed.value(field);
+      steps = 0;
+      return typeof from() === 'number' && !form.typed.isOff(field);
+    },
+    drag: ({ x }, start, _, { shiftKey }) => {
+      steps = Math.round((x - start.x) / STEP_PX) * (shiftKey ? 10 : 1);
+      move(false);
+    },
+    release: (_, dragged) => dragged && move(true),
+    // A finger that scrolls the column away takes the value back with it.
+    cancel: (dragged) => {
+      steps = 0;
+      if (dragged) move(true);
+    },
   });
 }
 
