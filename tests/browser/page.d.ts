@@ -209,7 +209,7 @@ interface Watcher {
   moved?(): void;
   /** A new run: all that was drawn is void. */
   cleared?(): void;
-  /** Seconds to the next try; NaN when the connection is back. */
+  /** Seconds to the next try, while the phase says so. */
   lost?(seconds: number): void;
   refused?(problem: Problem): void;
   /** With one message. */

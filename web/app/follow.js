@@ -58,7 +58,8 @@ export function beginToFollow(page) {
         page.unknown = null;
         page.follow(true);
       });
-    if (page.away) return hold('The connection to the server is lost.', 'Connect now', () => page.run.retry());
+    if (page.run.phase === 'lost')
+      return hold('The connection to the server is lost.', 'Connect now', () => page.run.retry());
     if (!scene) return hold(missing(page.missing[0]), 'Show it', () => page.showFault());
     try {
       const answer = await get(`v1/stability?${scene}`, signal);

@@ -49,8 +49,6 @@ export class Page extends TypedScene {
   judged = null;
   /** The case that the address names and that there is not. @type {string | null} */
   unknown = null;
-  /** True while the run has lost the server. */
-  away = false;
   /** Begins the game anew that is on, in place of its run. @type {(() => void) | null} */
   game = null;
   /** True while the last catch or throw is that of a panel, which tells of problems with it. */

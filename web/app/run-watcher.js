@@ -22,11 +22,17 @@ export function watchRun(page) {
   byId('step').onclick = () => page.step();
   byId('restart').onclick = () => page.restart();
   let { replay } = run;
+  let away = false;
   run.watch({
     changed: () => {
-      if (page.away && run.phase === 'idle') {
-        page.away = false;
-        connectionNotice(NaN, () => {});
+      if (away !== (run.phase === 'lost')) {
+        away = !away;
+        // There is no verdict while the server is away.
+        page.follow(true);
+        if (!away) {
+          clearNotice('connection');
+          page.sendChanges();
+        }
       }
       showRun(page);
     },
@@ -39,15 +45,7 @@ export function watchRun(page) {
       replay = run.replay;
     },
     cleared: () => page.view.reset(),
-    lost: (seconds) => {
-      connectionNotice(seconds, () => run.retry());
-      const away = !Number.isNaN(seconds);
-      if (away === page.away) return;
-      page.away = away;
-      // There is no verdict while the server is away.
-      page.follow(true);
-      if (!away) page.sendChanges();
-    },
+    lost: (seconds) => connectionNotice(seconds, () => run.retry()),
     refused: (problem) => refused(page, problem),
     problem: (message) => blame(page, message),
   });
@@ -108,7 +106,6 @@ async function showThisRun(page) {
 
 /** The run is refused for good. @param {Page} page @param {Problem} problem */
 function refused(page, problem) {
-  clearNotice('connection');
   const elsewhere = page.form?.blame(problem.errors) ?? [];
   const words = [inWords(problem.message), ...elsewhere, 'Its scene is kept; Run releases it anew.'].join(' ');
   notice('run', [h('strong', {}, 'The server did not take this run. '), words], { caution: true });

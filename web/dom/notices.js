@@ -25,11 +25,10 @@ export function clearNotice(kind) {
 
 /**
  * The connection is lost; its countdown is for the eye only, or a screen reader would speak every second.
- * @param {number} seconds to the next try; 0 while trying, NaN when all is well
+ * @param {number} seconds to the next try; 0 while trying
  * @param {() => void} retry
  */
 export function connectionNotice(seconds, retry) {
-  if (Number.isNaN(seconds)) return clearNotice('connection');
   const existing = shown.get('connection')?.querySelector('.countdown');
   const words = seconds === 0 ? 'Trying now…' : `Next try in ${seconds} s.`;
   if (existing) {

@@ -65,14 +65,12 @@ function watch(viewOf, { link, query }) {
     changed: () => {
       if (state.textContent !== run.words) state.textContent = run.words;
       view.redraw();
+      if (run.phase !== 'lost') clearNotice('connection');
     },
     struck: () => invalidate(view),
     cleared: clear,
     lost: (seconds) => connectionNotice(seconds, () => run.retry()),
-    refused: (problem) => {
-      clearNotice('connection');
-      notice('run', [problem.message], { dismissible: false, caution: true });
-    },
+    refused: (problem) => notice('run', [problem.message], { dismissible: false, caution: true }),
   });
   main.append(element);
   for (const [key, value] of link.run ?? []) query.set(key, value);

@@ -218,7 +218,6 @@ class Connection {
         };
         run.clock.forget();
         this.#read(message);
-        run.tell('lost', NaN);
         break;
       }
       case 'ack':
