@@ -24,6 +24,7 @@ type Impacts = import('../../web/run/impacts.js').Impacts;
 type Lasting = import('../../web/run/impacts.js').Lasting;
 type Page = import('../../web/app/page.js').Page;
 type Problem = import('../../web/api/client.js').Problem;
+type Releases = ReturnType<typeof import('../../web/charts/impacts/plot-interaction.js').bringReleases>;
 type Rig = import('../../web/rig/rig.js').Rig;
 type Run = import('../../web/run/run.js').Run;
 type RunState = import('../../web/run/run-state.js').RunState;
@@ -131,14 +132,6 @@ interface Offered {
   run: RunState | null;
 }
 
-/** Releases that clicks in a plot offer. */
-interface Releases {
-  isOfferedIn(plot: ImpactPlot): boolean;
-  startAt(plot: ImpactPlot, first: { x: number; y: number }): import('../../web/physics/first-impact.js').Start | null;
-  offer(plot: ImpactPlot, first: { x: number; y: number }): void;
-  release(): void;
-}
-
 // Body and table.
 
 /** Of the centre of gravity, m, and the angle, rad. */
@@ -218,20 +211,6 @@ interface Watcher {
 
 /** A run beside the live one; where it is staged, its rod is drawn too. */
 type Other = Reference & { staged: boolean };
-
-/** The time line, for those who step through it and show runs beside this one. */
-interface Timeline {
-  /** The place of the shown impact; null before the first. */
-  place(): number | null;
-  /** Shows where another run parts from this one, and the time up to which it is known; null for nowhere. */
-  parts(t: number | null, known?: number): void;
-  /** Goes on or back by strikes; false where only the run itself can go on. */
-  step(by: number): boolean;
-  /** Plays or holds the past; false in the present, which the run itself plays. */
-  toggle(): boolean;
-  toNow(): void;
-  replayFall(): void;
-}
 
 /** The page at a moment. */
 interface PageState {

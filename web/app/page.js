@@ -31,7 +31,7 @@ export class Page extends TypedScene {
   panelLink = new URLSearchParams();
   /** The panels below the fold; they come after the first plot. @type {Panels | null} */
   panels = null;
-  /** The time line over the run; it comes late as well. @type {Timeline | null} */
+  /** The time line over the run; it comes late as well. @type {ReturnType<typeof import('../timeline/timeline.js').bringTimeline> | null} */
   timeline = null;
   /** Shows another run beside this one, or none, under a name. @type {(id: string, other: Other | null) => void} */
   others = () => {};

@@ -70,7 +70,7 @@ function marksOf({ impacts, interventions, outcome, fate }, fields) {
   return marks;
 }
 
-/** @param {Page} page @returns {Timeline} */
+/** The time line, for those who step through it and show runs beside this one. @param {Page} page */
 export function bringTimeline(page) {
   const { run } = page;
   const { impacts } = run;

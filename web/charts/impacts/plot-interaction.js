@@ -107,7 +107,7 @@ const SHOWN = 200;
 const OWN_ENTER = 'a, button, input, select, textarea, summary, dialog, [tabindex]';
 
 /** Releases that a click in a plane offers: a mark and the impacts in all planes, with a button that releases. @param {Page} page @param {(words: string) => void} say aloud */
-function bringReleases(page, say) {
+export function bringReleases(page, say) {
   /** @type {{plot: ImpactPlot, at: Values, values: Record<string, number>, words: string} | null} */
   let offered = null;
   const asking = new LatestRequest();
