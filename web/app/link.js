@@ -1,6 +1,7 @@
 // Reads the page's address: scene and run in the words of `/v1/live`. Links grow old, so every part is checked.
 
-import { setAt, valueAt } from '../api/scene-fields.js';
+import { differences, setAt, valueAt } from '../api/scene-fields.js';
+import { merged, sceneQuery } from '../api/scene-query.js';
 import { linked } from '../api/settings.js';
 import { FASTEST, SLOWEST, VELOCITIES, interventionQuery, interventionsOf } from '../run/interventions.js';
 
@@ -22,7 +23,7 @@ const PANEL_KEYS =
  */
 
 /** @param {string} search @param {Field[]} fields @param {Case[]} cases @returns {Link} */
-export function readLink(search, fields, cases) {
+function readLink(search, fields, cases) {
   const panels = new URLSearchParams();
   /** @type {Link} */
   const link = { preset: null, unknown: null, changes: {}, speed: 1, run: null, panels, dropped: [] };
@@ -46,6 +47,20 @@ export function readLink(search, fields, cases) {
   const kept = wholeRun(run, fields, whole, link.dropped);
   if (kept.size > 0) link.run = kept;
   return link;
+}
+
+/** The case that a scene is, if it is one. @param {Scene} scene @param {Field[]} fields @param {Case[]} cases */
+export const caseOf = (scene, fields, cases) =>
+  cases.find((one) => differences(fields, one.scene, scene).length === 0) ?? null;
+
+/** The scene that an address names, the first case where it names none, with its case and its query. @param {string} search @param {Field[]} fields @param {Case[]} cases */
+export function sceneOf(search, fields, cases) {
+  const link = readLink(search, fields, cases);
+  const { preset, changes } = link;
+  const named = cases.find(({ name }) => name === preset);
+  const chosen = named ?? (Object.keys(changes).length === 0 ? cases[0] : caseOf(changes, fields, cases));
+  const scene = merged(chosen?.scene ?? {}, changes);
+  return { link, chosen, scene, query: sceneQuery(scene, chosen, fields) };
 }
 
 /** Foreign text, short enough to print. @param {string} text */

@@ -2,21 +2,17 @@
 
 import { remember, remembered } from '../api/remembered.js';
 import { differences, setAt } from '../api/scene-fields.js';
-import { merged, sceneQuery } from '../api/scene-query.js';
+import { sceneQuery } from '../api/scene-query.js';
 import { titlesOf } from '../api/settings.js';
 import { byId, h } from '../dom/elements.js';
 import { brokenLinkNotice } from '../dom/notices.js';
 import { prose } from '../dom/typeset.js';
 import STORIES from '../play/stories.json' with { type: 'json' };
 import { interventionsOf } from '../run/interventions.js';
-import { readLink } from './link.js';
+import { caseOf, sceneOf } from './link.js';
 
 /** Text without subscripts, for an option or the window's title. @param {string} text */
 export const plain = (text) => text.replaceAll('κ_', 'κ');
-
-/** The case that a scene is, if it is one. @param {Page} page @param {Scene} scene */
-const caseOf = ({ cases, fields }, scene) =>
-  cases.find((one) => differences(fields, one.scene, scene).length === 0) ?? null;
 
 /** @param {Page} page @param {() => void} back returns to the case */
 function nameScene({ typed = {}, chosen: one, fields, chooser }, back) {
@@ -84,7 +80,7 @@ export function launch(page, values) {
 
 /** Shows and runs a scene from further below. @param {Page} page @param {Scene} scene @param {Iterable<[string, string]>} [deeds] to its run */
 export function play(page, scene, deeds) {
-  bring(page, scene, caseOf(page, scene), 'the release');
+  bring(page, scene, caseOf(scene, page.fields, page.cases), 'the release');
   page.start(deeds);
   scrollTo(0, 0);
 }
@@ -95,15 +91,13 @@ let turn = 0;
 /** Shows the scene of an address, and joins its run. @param {Page} page @param {string} search */
 export function restore(page, search) {
   const { fields, cases, run } = page;
-  const link = readLink(search, fields, cases);
-  const bare = link.preset === null && Object.keys(link.changes).length === 0;
-  page.chosen = cases.find((one) => one.name === (bare ? cases[0]?.name : link.preset)) ?? caseOf(page, link.changes);
+  const { link, chosen, scene, query } = sceneOf(search, fields, cases);
+  page.chosen = chosen;
   page.speed = link.speed;
   run.reset();
   page.panelLink = link.panels;
   page.panels?.restore(link.panels);
   brokenLinkNotice('link', link.dropped);
-  const scene = merged(page.chosen?.scene ?? {}, link.changes);
   page.byItself = false;
   turn += 1;
   if (!link.run) {
@@ -111,7 +105,6 @@ export function restore(page, search) {
     page.unknown = link.unknown;
     return page.opened();
   }
-  const query = sceneQuery(scene, page.chosen, fields);
   for (const [key, value] of link.run) query.set(key, value);
   query.set('speed', String(page.speed));
   for (const { set } of interventionsOf(link.run)) {

@@ -13,7 +13,8 @@ import { brokenLinkNotice, clearNotice, connectionNotice, notice } from '../dom/
 import { invalidate } from '../charts/surface.js';
 import { listen } from '../charts/impacts/plot-pointer.js';
 import { ENTRIES, card } from '../panels/card.js';
-import { ScenePage, begin, sceneOf } from '../panels/scene-page.js';
+import { sceneOf } from '../app/link.js';
+import { ScenePage, begin } from '../panels/scene-page.js';
 
 const id = location.pathname.split('/').at(-1) ?? '';
 const main = byId('main');
@@ -64,8 +65,8 @@ function watch(viewOf, { link, query }) {
   run.watch({
     changed: () => {
       if (state.textContent !== run.words) state.textContent = run.words;
-      view.redraw();
       if (run.phase !== 'lost') clearNotice('connection');
+      view.redraw();
     },
     struck: () => invalidate(view),
     cleared: clear,

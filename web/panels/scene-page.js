@@ -1,8 +1,8 @@
 // Pages whose scene is in the address: how they begin, what a panel finds around it, and the choice of a case.
 
 import { get, wordsOf } from '../api/client.js';
-import { merged, sceneQuery } from '../api/scene-query.js';
-import { readLink } from '../app/link.js';
+import { sceneQuery } from '../api/scene-query.js';
+import { sceneOf } from '../app/link.js';
 import { retryButton } from '../dom/elements.js';
 import { brokenLinkNotice, notice } from '../dom/notices.js';
 import { knowTitles } from '../dom/typeset.js';
@@ -22,15 +22,6 @@ export async function begin(make) {
     const again = retryButton(() => location.reload());
     notice('server', [wordsOf(error), ' ', again], { dismissible: false, caution: true });
   }
-}
-
-/** The scene that an address names, with its case and its query. @param {string} search @param {Field[]} fields @param {Case[]} cases */
-export function sceneOf(search, fields, cases) {
-  const link = readLink(search, fields, cases);
-  const named = cases.find(({ name }) => name === link.preset);
-  const chosen = named ?? (Object.keys(link.changes).length === 0 ? cases[0] : null);
-  const scene = merged(chosen?.scene ?? {}, link.changes);
-  return { link, chosen, scene, query: sceneQuery(scene, chosen, fields) };
 }
 
 /** A scene with the parts of the address that belong to panels on it: a page around components. It tells each change by an event. */

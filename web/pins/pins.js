@@ -2,9 +2,8 @@
 
 import { get, wordsOf } from '../api/client.js';
 import { differences, valueAt } from '../api/scene-fields.js';
-import { merged } from '../api/scene-query.js';
 import { missing, titlesOf } from '../api/settings.js';
-import { readLink } from '../app/link.js';
+import { sceneOf } from '../app/link.js';
 import { play } from '../app/scenes.js';
 import { byId } from '../dom/elements.js';
 import { number, quantity } from '../dom/numbers.js';
@@ -240,12 +239,12 @@ export function bringPins(page) {
       if (String(query) === String(pins[place]?.query ?? '')) return [];
       // Interventions are read with the run that they belong to.
       const acted = [...query.keys()].some(isIntervention);
-      const { preset, changes, run, dropped } = readLink(`?${query}${acted ? '&epoch_ms=0' : ''}`, fields, cases);
-      const one = cases.find((other) => other.name === preset);
-      const isScene = one || Object.keys(changes).length > 0;
+      const named = sceneOf(`?${query}${acted ? '&epoch_ms=0' : ''}`, fields, cases);
+      const { preset, changes, run, dropped } = named.link;
+      const isScene = preset !== null || Object.keys(changes).length > 0;
       const deeds = interventionQuery(interventionsOf(run ?? new URLSearchParams()));
       const kept = new URLSearchParams([...[...query].filter(([key]) => !isIntervention(key)), ...deeds]);
-      put(place, isScene && dropped.length === 0 ? new Pin(kept, merged(one?.scene ?? {}, changes)) : null);
+      put(place, isScene && dropped.length === 0 ? new Pin(kept, named.scene) : null);
       return dropped.map((what) => `of pin ${name}: ${what}`);
     });
   };

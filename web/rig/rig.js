@@ -3,7 +3,8 @@
 import { setAt } from '../api/scene-fields.js';
 import { merged, parameters } from '../api/scene-query.js';
 import { brokenLinkNotice } from '../dom/notices.js';
-import { ScenePage, sceneOf } from '../panels/scene-page.js';
+import { sceneOf } from '../app/link.js';
+import { ScenePage } from '../panels/scene-page.js';
 
 /** Sizes that the owner has, by field: `have.table.errors.angle_bias=0.001`. */
 const HAVE = /^have\.([a-z_.]+)$/;
