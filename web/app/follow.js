@@ -7,7 +7,7 @@ import { missing } from '../api/settings.js';
 import { byId } from '../dom/elements.js';
 import { debounce } from '../dom/debounce.js';
 import { bringVerdict } from '../panels/verdict/verdict.js';
-import { recordedRun } from '../timeline/others.js';
+import { computedRun } from '../timeline/others.js';
 
 /** An edit counts as settled after so long without another, ms. */
 const QUIET_MS = 150;
@@ -88,11 +88,11 @@ export function beginToFollow(page) {
   const previews = new Follower(async (_, signal) => {
     const scene = page.typedQuery;
     if (!scene) return;
-    const answer = await get(`v1/trajectories?${scene}&bounces=${AHEAD}`, signal).catch(() => null);
+    const ahead = await computedRun(scene, AHEAD, signal).catch(() => null);
     // One of a scene that is wrong or out of date stays until there is another.
-    if (!answer) return;
-    page.ahead = recordedRun(answer);
-    for (const one of [...page.plots, page.view]) one.preview(page.ahead);
+    if (!ahead) return;
+    page.ahead = ahead;
+    for (const one of [...page.plots, page.view]) one.preview(ahead);
   });
 
   const hurry = () => {

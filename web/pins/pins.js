@@ -1,6 +1,6 @@
 // Up to three runs that stay as references beside the present one: their dots, their outcome, their rods, their place in the address.
 
-import { get, wordsOf } from '../api/client.js';
+import { wordsOf } from '../api/client.js';
 import { differences, valueAt } from '../api/scene-fields.js';
 import { missing, titlesOf } from '../api/settings.js';
 import { sceneOf } from '../app/link.js';
@@ -10,7 +10,7 @@ import { number, quantity } from '../dom/numbers.js';
 import { UNITS } from '../dom/units.js';
 import { endedAs } from '../panels/verdict/words.js';
 import { interventionQuery, interventionsOf } from '../run/interventions.js';
-import { recordedRun } from '../timeline/others.js';
+import { computedRun } from '../timeline/others.js';
 import { html, render } from '../vendor/preact/preact.js';
 import { bringParting } from './parting.js';
 
@@ -28,12 +28,8 @@ const LINK_BYTES = 8 * 1024 - 1024;
 
 /** A pinned run: the query that means it, and what the server computes for it. */
 class Pin {
-  /** @type {Trajectory['outcome'] | null} */
-  outcome = null;
   /** @type {RunState | null} */
   run = null;
-  /** Largest |θ| at an impact, rad; null for a point mass. @type {number | null} */
-  largest = null;
   /** The reason why there is no answer, in words. */
   failure = '';
   /** True while its rod is on the stage of the run. */
@@ -49,11 +45,7 @@ class Pin {
 
   async compute() {
     try {
-      const answer = await get(`v1/trajectories?${this.query}&bounces=${IMPACTS}`, this.request.signal);
-      this.outcome = answer.outcome;
-      this.run = recordedRun(answer, this.interventions);
-      const angles = answer.impacts.theta.filter((/** @type {number | null} */ theta) => theta !== null);
-      this.largest = angles.length > 0 ? Math.max(...angles.map(Math.abs)) : null;
+      this.run = await computedRun(this.query, IMPACTS, this.request.signal);
     } catch (error) {
       this.failure = wordsOf(error);
     }
@@ -168,7 +160,9 @@ export function bringPins(page) {
   const row = (pin, place) => {
     const { fields, typed = {} } = page;
     const { name, symbol } = SLOTS[place];
-    const { scene, outcome, largest, interventions } = pin;
+    const { scene, run, interventions } = pin;
+    const angles = run?.impacts.column('theta').subarray(0, run.impacts.end);
+    const largest = Math.max(...(angles ?? []).map(Math.abs));
     const gain = valueAt(scene, 'table.tilt_gain');
     const others = differences(fields, scene, typed);
     const deeds = interventions.length;
@@ -179,8 +173,8 @@ export function bringPins(page) {
       <span class="pin-words">
         ${typeof gain === 'number' && html`<span><i class="symbol">κ</i> ${number(gain)}, </span>`}
         <i class="symbol">e</i> ${number(valueAt(scene, 'contact.restitution') ?? 1)}: <b>${
-          outcome ? endedAs(outcome.kind, outcome.bounces) : pin.failure || 'computing…'
-        }</b>${largest !== null && `, largest θ ${quantity(largest, 'rad', 3)}`}${
+          run?.outcome ? endedAs(run.outcome.kind, run.outcome.bounces) : pin.failure || 'computing…'
+        }</b>${largest >= 0 && `, largest θ ${quantity(largest, 'rad', 3)}`}${
           deeds > 0 && `, with ${deeds === 1 ? 'a change' : `${deeds} changes`} on the way`
         }<span class="muted">${
           others.length === 0 ? '. The scene is the same' : `. Differs in ${titlesOf(others, 4)}`

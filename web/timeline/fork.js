@@ -1,7 +1,7 @@
 // “What if from here”: a second run that parts from this one at the shown impact, with another tilt gain.
 
 import { criticalGain } from '../api/answers.js';
-import { get, wordsOf } from '../api/client.js';
+import { wordsOf } from '../api/client.js';
 import { Follower } from '../api/latest-request.js';
 import { valueAt } from '../api/scene-fields.js';
 import { sceneQuery } from '../api/scene-query.js';
@@ -13,7 +13,7 @@ import { sign } from '../panels/parts.js';
 import { endedAs } from '../panels/verdict/words.js';
 import { interventionQuery } from '../run/interventions.js';
 import { html, render } from '../vendor/preact/preact.js';
-import { recordedRun } from './others.js';
+import { computedRun } from './others.js';
 
 /** Impacts that a fork is followed for. */
 const AHEAD = 300;
@@ -113,14 +113,12 @@ export function bringFork(page) {
     const release = sceneQuery(run.released ?? {}, page.chosen, page.fields);
     const query = new URLSearchParams([...release, ...interventionQuery(interventions)]);
     try {
-      /** @type {Trajectory} */
-      const answer = await get(`v1/trajectories?${query}&bounces=${from.n + AHEAD}`, signal);
-      if (at !== from) return;
+      const forked = await computedRun(query, from.n + AHEAD, signal);
+      if (at !== from || !forked.outcome) return;
       const label = `what if κ ${number(wanted)}`;
-      const forked = recordedRun(answer, interventions);
       page.others('fork', { run: forked, from: from.n, symbol: '◆', colour: 'measured', label, staged: true });
-      timeline.parts(from.t, answer.outcome.t);
-      const { kind, bounces } = answer.outcome;
+      const { kind, bounces, t } = forked.outcome;
+      timeline.parts(from.t, t);
       const later = `${number(bounces - from.n, 8)} bounces`;
       const ended = kind === 'completed' ? `survives the next ${later}` : `${endedAs(kind, bounces)}, ${later} later`;
       draw(`From bounce ${number(from.n, 8)} with κ ${number(wanted)}: ${ended}.`);

@@ -1,21 +1,26 @@
 // Runs beside the live one: computed by the server to their end, drawn by the same closed forms and on the same clock.
 
+import { get } from '../api/client.js';
 import { decay, effectiveGravity, windPush } from '../physics/flight.js';
 import { fromColumns } from '../run/impacts.js';
+import { interventionsOf } from '../run/interventions.js';
 import { RunState } from '../run/run-state.js';
 
 /**
- * The run of an answer of `/v1/trajectories`. In flight ẋ and θ̇ stay or decay and ẏ falls, so the states after the strikes follow from
- * those before the next ones.
- * @param {Trajectory} answer
- * @param {Intervention[]} [interventions]
+ * The run that the server computes for a query, for so many bounces at most. In flight ẋ and θ̇ stay or decay and ẏ falls, so the states
+ * after the strikes follow from those before the next ones.
+ * @param {URLSearchParams} query
+ * @param {number} bounces
+ * @param {AbortSignal} signal
  */
-export function recordedRun(answer, interventions = []) {
+export async function computedRun(query, bounces, signal) {
+  /** @type {Trajectory} */
+  const answer = await get(`v1/trajectories?${query}&bounces=${bounces}`, signal);
   const run = new RunState(answer.impacts.n.length);
   const impacts = /** @type {Record<string, (number | null)[]>} */ (/** @type {unknown} */ (answer.impacts));
   const { release, air } = answer.scene;
   run.released = { ...answer.scene, derived: answer.derived };
-  run.interventions = interventions;
+  run.interventions = interventionsOf(query);
   run.outcome = answer.outcome;
   run.phase = 'ended';
   run.fall = {

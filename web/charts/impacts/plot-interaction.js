@@ -1,13 +1,13 @@
 // The interaction with all charts of the bounces: one selection, one bounce pointed at, a start by a click.
 
-import { Problem, get } from '../../api/client.js';
+import { Problem } from '../../api/client.js';
 import { LatestRequest } from '../../api/latest-request.js';
 import { launch } from '../../app/scenes.js';
 import { byId, h, pressedIn } from '../../dom/elements.js';
 import { contactDistance } from '../../physics/body.js';
 import { within } from '../../physics/first-impact.js';
 import { Selection } from '../../run/selection.js';
-import { recordedRun } from '../../timeline/others.js';
+import { computedRun } from '../../timeline/others.js';
 import { invalidate } from '../surface.js';
 import { listen } from './plot-pointer.js';
 
@@ -138,9 +138,8 @@ export function bringReleases(page, say) {
     if (!query) return;
     for (const [path, value] of Object.entries(values)) query.set(`scene.${path}`, String(value));
     try {
-      const answer = await get(`v1/trajectories?${query}&bounces=${SHOWN}`, signal);
+      const run = await computedRun(query, SHOWN, signal);
       if (signal.aborted) return;
-      const run = recordedRun(answer);
       show(run);
       page.view.preview(run);
     } catch (error) {
