@@ -68,11 +68,16 @@ for (const width of [1280, 800])
         globalThis.met = new Set();
         globalThis.told = 0;
         let stand = null;
-        const { moveTo, fillText } = CanvasRenderingContext2D.prototype;
+        let last = 0;
+        const { moveTo, stroke, fillText } = CanvasRenderingContext2D.prototype;
         CanvasRenderingContext2D.prototype.moveTo = function (x, y) {
-          // The stand is the only line as broad.
-          if (this.lineWidth === 8) stand = { left: x - 4, right: x + 4 };
+          last = x;
           return moveTo.call(this, x, y);
+        };
+        CanvasRenderingContext2D.prototype.stroke = function () {
+          // The stand is the only line as broad.
+          if (this.lineWidth === 8) stand = { left: last - 4, right: last + 4 };
+          return stroke.call(this);
         };
         CanvasRenderingContext2D.prototype.fillText = function (text, x, y, ...rest) {
           if (/^(bounce|impulse|α)/.test(text) && stand && this.canvas.closest('#scene-frame')) {

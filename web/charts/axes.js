@@ -1,21 +1,12 @@
 // Scales with round numbers, and axes.
 
-import { number, roundStep } from '../dom/numbers.js';
+import { number, roundStep, ticks } from '../dom/numbers.js';
 import { shownFactor, shownUnit } from '../dom/units.js';
 
 /** @param {Interval} range widened @param {number} value */
 export function include(range, value) {
   if (value < range.low) range.low = value;
   if (value > range.high) range.high = value;
-}
-
-/** @param {Interval} range @param {number} count */
-export function ticks({ low, high }, count) {
-  const step = roundStep(high - low, count);
-  const found = [];
-  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + step * 1e-9; k += 1)
-    found.push(Number((k * step).toPrecision(12)));
-  return found;
 }
 
 /**

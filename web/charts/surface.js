@@ -67,31 +67,23 @@ export class Surface {
     this.context.fill();
   }
 
-  /** @param {Colour} colour @param {LineLook} [look] */
-  #takePen(colour, { width = 1, dashes, cap = 'butt' } = {}) {
+  /** Draws the path. @param {Colour} colour @param {LineLook} [look] */
+  stroke(colour, { width = 1, dashes, cap = 'butt' } = {}) {
     const { context } = this;
     context.strokeStyle = colourOf(colour);
     context.lineWidth = width;
     context.lineCap = cap;
     if (dashes) context.setLineDash(dashes);
-  }
-
-  /** Draws the path. @param {Colour} colour @param {LineLook} [look] */
-  stroke(colour, look) {
-    this.#takePen(colour, look);
-    this.context.stroke();
-    if (look?.dashes) this.context.setLineDash([]);
+    context.stroke();
+    if (dashes) context.setLineDash([]);
   }
 
   /** @param {Colour} colour @param {number} x0 @param {number} y0 @param {number} x1 @param {number} y1 @param {LineLook} [look] */
   line(colour, x0, y0, x1, y1, look) {
-    const { context } = this;
-    this.#takePen(colour, look);
-    context.beginPath();
-    context.moveTo(x0, y0);
-    context.lineTo(x1, y1);
-    context.stroke();
-    if (look?.dashes) context.setLineDash([]);
+    this.context.beginPath();
+    this.context.moveTo(x0, y0);
+    this.context.lineTo(x1, y1);
+    this.stroke(colour, look);
   }
 
   /** @param {number} x @param {number} y @param {number} r @param {LineLook & {fill?: Colour, stroke?: Colour}} look */

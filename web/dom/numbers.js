@@ -79,3 +79,13 @@ export function roundStep(span, count) {
   const multiple = raw / power;
   return power * (multiple < 1.5 ? 1 : multiple < 3.5 ? 2 : multiple < 7.5 ? 5 : 10);
 }
+
+/** Round numbers in a range, about so many. @param {Interval} range @param {number} count */
+export function ticks({ low, high }, count) {
+  const step = roundStep(high - low, count);
+  const first = Math.ceil(low / step - 1e-9);
+  const length = Math.max(0, Math.floor(high / step + 1e-9) - first + 1);
+  // 3 / 10 is 0.3, and 3 × 0.1 is not.
+  const parts = Math.round(1 / step);
+  return Array.from({ length }, (_, k) => (step < 1 ? (first + k) / parts : (first + k) * step));
+}

@@ -1,7 +1,7 @@
 // The world of a scene on its canvas: the part that is shown, with its grid, its rulers and its marks of height; rods, table and flights in it.
 
 import { CanvasView } from '../charts/surface.js';
-import { number, roundStep } from '../dom/numbers.js';
+import { number, roundStep, ticks } from '../dom/numbers.js';
 import { contactDistance, derivedOf } from '../physics/body.js';
 import { poseOn } from '../physics/flight.js';
 
@@ -98,20 +98,14 @@ export class World extends CanvasView {
   /** Round places across the picture, m and px. @param {number} count @returns {[number, number][]} */
   #columns(count) {
     const { surface, x, metre } = this.stage;
-    const step = roundStep(surface.width / metre, count);
-    const first = Math.ceil((this.x - surface.width / 2 / metre) / step);
-    const length = Math.max(0, Math.ceil((surface.width - x(first * step)) / (step * metre)));
-    return Array.from({ length }, (_, k) => [(first + k) * step, Math.round(x((first + k) * step)) + 0.5]);
+    const half = surface.width / 2 / metre;
+    return ticks({ low: this.x - half, high: this.x + half }, count).map((at) => [at, Math.round(x(at)) + 0.5]);
   }
 
-  /** Round heights from the contacts up, m and px. @param {number} least px */
-  #rows(least) {
+  /** Round heights from the contacts up, m and px. @returns {[number, number][]} */
+  get #rows() {
     const { y } = this.stage;
-    const step = roundStep(this.#shown, 4);
-    /** @type {[number, number][]} */
-    const rows = [];
-    for (let k = 0; y(k * step) > least; k += 1) rows.push([k * step, Math.round(y(k * step)) + 0.5]);
-    return rows;
+    return ticks({ low: 0, high: this.#shown }, 4).map((at) => [at, Math.round(y(at)) + 0.5]);
   }
 
   /** An empty picture with its grid. */
@@ -120,8 +114,7 @@ export class World extends CanvasView {
     surface.clear();
     if (!measured) return surface.line('line', 0, y(0), surface.width, y(0));
     for (const [, x] of this.#columns(8)) surface.line('faint', x, 0, x, floor);
-    for (const [height, row] of this.#rows(0))
-      surface.line(height === 0 ? 'line' : 'faint', 0, row, surface.width, row);
+    for (const [height, row] of this.#rows) surface.line(height === 0 ? 'line' : 'faint', 0, row, surface.width, row);
   }
 
   /** The rulers lie over everything: x moves with the ground, y is the height of the centre of gravity. */
@@ -139,8 +132,9 @@ export class World extends CanvasView {
       surface.text(number(place), x, floor + 7, { colour: 'muted', align: 'center' });
     }
     surface.text('x / m', 6, floor + 7, { colour: 'muted' });
-    for (const [at, row] of this.#rows(14))
-      surface.text(at === 0 ? '0\u202fm' : number(at), 6, row - 2.5, { colour: 'muted', baseline: 'bottom' });
+    for (const [at, row] of this.#rows)
+      if (row > 14)
+        surface.text(at === 0 ? '0\u202fm' : number(at), 6, row - 2.5, { colour: 'muted', baseline: 'bottom' });
     // A bar of a round length.
     const length = roundStep(100 / metre, 1);
     const right = width - 14;

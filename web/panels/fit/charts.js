@@ -1,9 +1,9 @@
 // Charts of measured bounces as SVG, read by pointer and keys: their residuals, the bounces over those of a run, and the convergence of a fit.
 
-import { roundRange, ticks } from '../../charts/axes.js';
+import { roundRange } from '../../charts/axes.js';
 import { readColumns } from '../../charts/readable/server-figure.js';
 import { svg } from '../../charts/svg.js';
-import { fixed, number, quantity as worded } from '../../dom/numbers.js';
+import { fixed, number, quantity as worded, ticks } from '../../dom/numbers.js';
 import { angles, shownUnit } from '../../dom/units.js';
 import { html, useMemo, useState } from '../../vendor/preact/preact.js';
 import { useAnswer } from '../ask.js';
