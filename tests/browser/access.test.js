@@ -3,7 +3,20 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { violations } from './axe.js';
-import { Stage, enter, impacts, ink, loadAll, openPanel, openTab, reachImpact, reachPhase, verdict } from './stage.js';
+import {
+  Stage,
+  enter,
+  impacts,
+  ink,
+  loadAll,
+  openPanel,
+  openTab,
+  reachImpact,
+  reachPhase,
+  verdict,
+  runTo,
+  releaseTo,
+} from './stage.js';
 
 const stage = await Stage.open();
 
@@ -20,8 +33,7 @@ for (const width of [320, 800, 1280]) {
     });
     await verdict(page);
     assert.deepEqual(await violations(page), [], 'idle, with a notice');
-    await page.click('#run');
-    await reachImpact(page, 3);
+    await releaseTo(page, 3);
     await openPanel(page, 'map');
     await unfold(page);
     await page.fill('#map-x-from', '9');
@@ -83,8 +95,7 @@ test('nothing is wider than 320 px', async () => {
   const excess = () => page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
   await verdict(page);
   assert.equal(await excess(), 0);
-  await page.click('#run');
-  await reachImpact(page, 3);
+  await releaseTo(page, 3);
   for (const tab of ['values', 'why']) {
     await openTab(page, tab);
     await unfold(page);
@@ -95,8 +106,7 @@ test('nothing is wider than 320 px', async () => {
 });
 
 test('a whole session needs no pointer', async () => {
-  const { page, clean } = await stage.page('?tab=values');
-  await verdict(page);
+  const { page, clean } = await stage.judged('?tab=values');
   // What loads later is passed before it is there; the next round reaches it.
   const missing = new Set();
   const tabThrough = async (...ids) => {
@@ -167,10 +177,7 @@ test('a whole session needs no pointer', async () => {
 
 test('the colours of the canvases follow the scheme while the page is open', async () => {
   const { page, clean } = await stage.page('?preset=case-1&tab=why', { colorScheme: 'light' });
-  await page.click('#run');
-  await reachImpact(page, 5);
-  await page.click('#run');
-  await reachPhase(page, 'paused');
+  await runTo(page, 5);
   const light = await page.evaluate(() => getComputedStyle(document.documentElement).getPropertyValue('--series-0'));
   assert.ok((await ink(page, '#plane-angle', '--series-0')) > 10);
   await page.emulateMedia({ colorScheme: 'dark' });
@@ -185,8 +192,7 @@ test('the colours of the canvases follow the scheme while the page is open', asy
 
 test('with motion unwanted the scene stands still between impacts, unless asked to move', async () => {
   const { page, clean } = await stage.page('?preset=case-1', { reducedMotion: 'reduce' });
-  await page.click('#run');
-  await reachImpact(page, 2);
+  await releaseTo(page, 2);
   // So slow that the next impact is seconds away.
   await page.locator('#speed').evaluate((slider) => {
     slider.value = '0';

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, enter, openPanel, verdict } from './stage.js';
+import { Stage, enter, openPanel, verdict, plain } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -11,8 +11,6 @@ async function open(query) {
   await openPanel(opened.page, 'branch');
   return opened;
 }
-
-const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
 
 for (const [preset, kind] of [
   ['case-1', 'soft'],
@@ -88,20 +86,11 @@ test('it follows the scene, and a body without an angle has none', async () => {
 
 test('without a server it says so and asks again by itself', async () => {
   const { page } = await stage.page('?preset=case-1', {
-    prepare: () => {
-      const real = globalThis.fetch;
-      globalThis.refuse = true;
-      globalThis.fetch = (input, init) =>
-        globalThis.refuse && String(input).includes('periodic-orbits')
-          ? Promise.reject(new TypeError('no network'))
-          : real(input, init);
-    },
+    watch: (page) => page.route(/periodic-orbits/, (route) => route.abort()),
   });
   await openPanel(page, 'branch');
   await page.locator('#branch-body', { hasText: 'The server does not answer' }).waitFor();
-  await page.evaluate(() => {
-    globalThis.refuse = false;
-  });
+  await page.unroute(/periodic-orbits/);
   await page.locator('#branch-body svg.figure').waitFor();
 });
 

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { angleStart, velocityStart, within } from '../../web/physics/first-impact.js';
-import { Stage, ink, numbers, reachImpact, reachPhase, speedUp, showChart } from './stage.js';
+import { Stage, ink, numbers, reachImpact, reachPhase, speedUp, runTo, boxOf, releaseTo } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -22,18 +22,10 @@ async function paused(query, n, options) {
   const opened = await stage.page(`${query}&tab=why`, options);
   const { page } = opened;
   await speedUp(page);
-  await page.click('#run');
-  await reachImpact(page, n);
-  await page.click('#run');
-  await reachPhase(page, 'paused');
+  await runTo(page, n);
   // Whatever was under way when it was paused has arrived.
   await page.waitForFunction(() => /clock\.\d+\.speed=0/.test(location.search));
   return opened;
-}
-
-async function boxOf(page, id) {
-  await showChart(page, id);
-  return page.locator(`#${id} .canvas-box`).boundingBox();
 }
 
 /** A drag between two places, in shares of the box. */
@@ -90,8 +82,7 @@ test('a drag over one plot selects the same impacts in all, those to come too, a
   for (const [index, count] of after.entries())
     assert.ok(count > before[index] + 8, `rings in picture ${index}: ${before[index]}, ${count}`);
   const link = page.url();
-  await page.click('#run');
-  await reachImpact(page, of + 20);
+  await releaseTo(page, of + 20);
   await page.waitForFunction(
     (n) => Number(/of (\d+)/.exec(document.querySelector('#brush-told').textContent)[1]) >= n,
     of + 20,
@@ -150,8 +141,7 @@ test('while impacts arrive, a selection does not draw the old ones again', async
     },
   });
   await speedUp(page);
-  await page.click('#run');
-  await reachImpact(page, 30);
+  await releaseTo(page, 30);
   await wake(page);
   await drag(page, 'plane-angle', [0.25, 0.35], [0.8, 0.8]);
   await told(page, COUNTED);

@@ -2,25 +2,12 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, drawn, openPanel, openTab, reachPhase, slide } from './stage.js';
+import { Stage, openPanel, openTab, reachPhase, slide, plain, poseOf } from './stage.js';
 
 const stage = await Stage.open();
 /** Bounces for 0.14 s; then the body slides and falls over by 0.39 s. */
 const SETTLES = 'preset=still-lossy&scene.contact.restitution=0.1&scene.release.theta=0.1&scene.release.x_dot=0';
-const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
-
 const trajectory = async (query) => (await fetch(`${stage.url}v1/trajectories?${query}&bounces=1000&hold=6`)).json();
-
-/** The drawn values, with all digits that a picture at rest has. */
-async function pose(page) {
-  await drawn(page);
-  const words = plain(await page.locator('#scene-readout').innerText());
-  const [t, n, theta, x, y] = /t (\S+) s +bounce (\d+) +θ (\S+) rad +x (\S+) m +y (\S+) m/
-    .exec(words)
-    .slice(1)
-    .map(Number);
-  return { t, n, theta, x, y };
-}
 
 /** Compares a drawn pose with the contact of the server: its moments are 10 ms apart, and the page draws a cubic between them. */
 function assertHeld({ t, n, theta, x, y }, { hold, outcome, scene }) {
@@ -45,7 +32,7 @@ test('the run goes on in contact up to its end, which the time line has', async 
   const { page, clean } = await stage.page(`?${SETTLES}&speed=0.5`);
   await page.click('#run');
   await reachPhase(page, 'ended');
-  const end = await pose(page);
+  const end = await poseOf(page);
   assert.ok(Math.abs(end.t - run.hold_end.t) < 1e-4, `${end.t}, ${run.hold_end.t}`);
   assert.ok(Math.abs(end.theta - run.hold.theta.at(-1)) < 1e-3);
   assertHeld(end, run);
@@ -63,22 +50,22 @@ test('the run goes on in contact up to its end, which the time line has', async 
   const [settled, last] = [run.outcome.settle_time, run.hold_end.t];
   const share = (settled + 0.6 * (last - settled)) / last;
   await page.mouse.click(box.x + 9 + (box.width - 18) * share, box.y + box.height / 2);
-  const scrubbed = await pose(page);
+  const scrubbed = await poseOf(page);
   assert.ok(scrubbed.t > settled && scrubbed.t < last, `${scrubbed.t}`);
   assertHeld(scrubbed, run);
   assert.doesNotMatch(await told(page), /the end of the run/);
   await page.click('#step-back');
-  assert.ok(Math.abs((await pose(page)).t - run.outcome.t) < 1e-4);
+  assert.ok(Math.abs((await poseOf(page)).t - run.outcome.t) < 1e-4);
   // The address names the run, and the contact belongs to it.
   assert.ok(!page.url().includes('hold='), page.url());
   const second = await stage.page(new URL(page.url()).search);
   await reachPhase(second.page, 'ended');
-  assert.deepEqual(await pose(second.page), end);
+  assert.deepEqual(await poseOf(second.page), end);
   second.clean();
   // An address of the API may name another time in contact.
   const shorter = await stage.page(`?${SETTLES}&hold=0.05&speed=20`);
   await reachPhase(shorter.page, 'ended');
-  assert.ok(Math.abs((await pose(shorter.page)).t - settled - 0.05) < 1e-4);
+  assert.ok(Math.abs((await poseOf(shorter.page)).t - settled - 0.05) < 1e-4);
   assert.match(shorter.page.url(), /[?&]hold=0\.05(&|$)/);
   shorter.clean();
   clean();
@@ -93,12 +80,12 @@ test('in contact it is paused, joined by its address, and thrown', async () => {
   await page.locator('#catch-live-told', { hasText: 'The table holds the body' }).waitFor();
   await page.click('#run');
   await reachPhase(page, 'paused');
-  const paused = await pose(page);
+  const paused = await poseOf(page);
   assertHeld(paused, run);
   await page.waitForFunction(() => /clock\.0\.speed=0/.test(location.search));
   const second = await stage.page(new URL(page.url()).search);
   await reachPhase(second.page, 'paused');
-  assert.deepEqual(await pose(second.page), paused);
+  assert.deepEqual(await poseOf(second.page), paused);
   second.clean();
   await page.fill('#catch-height', '0.5');
   await page.click('#catch-throw');

@@ -2,25 +2,16 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, impacts as reached, ink, reachImpact, reachPhase } from './stage.js';
+import { Stage, impacts as reached, ink, reachImpact, plain, startPaused } from './stage.js';
 
 const stage = await Stage.open();
 /** The page with symbols, paused before its first strike. */
 async function open(query) {
-  const opened = await stage.page(query, {
-    prepare: () => {
-      localStorage['equipoise.symbols'] = 'on';
-    },
-  });
+  const opened = await stage.page(query, { stored: { symbols: 'on' } });
   const { page } = opened;
-  await page.click('#run');
-  await reachPhase(page, 'running');
-  await page.click('#run');
-  await reachPhase(page, 'paused');
+  await startPaused(page);
   return opened;
 }
-
-const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
 
 test('an early strike with friction is shown where and as what it was', async () => {
   const query = 'preset=case-1-noise&scene.contact.friction=0.3&scene.contact.restitution=0.8&scene.release.theta=0.1';

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, changeUnderWay, drawn, reachImpact, showChart, slide } from './stage.js';
+import { Stage, changeUnderWay, drawn, showChart, slide, releaseTo } from './stage.js';
 
 const stage = await Stage.open();
 const PINNED =
@@ -92,8 +92,7 @@ for (const width of [1280, 800])
     await page.locator('#present:enabled').waitFor({ state: 'attached' });
     await page.locator('body').press('p');
     await page.locator('html.presenting').waitFor();
-    await page.click('#run');
-    await reachImpact(page, 80);
+    await releaseTo(page, 80);
     assert.ok((await page.evaluate(() => globalThis.told)) > 10);
     assert.deepEqual(await page.evaluate(() => [...globalThis.met]), []);
     clean();
@@ -172,8 +171,7 @@ test('targets of the head are 44 px high on a phone', async () => {
 test('nothing moves while a slider is dragged in a run that does not play its value yet', async () => {
   const { page, clean } = await stage.page('?preset=case-1', { viewport: { width: 1280, height: 800 } });
   await page.locator('#present:enabled').waitFor({ state: 'attached' });
-  await page.click('#run');
-  await reachImpact(page, 1);
+  await releaseTo(page, 1);
   const frame = () => page.locator('#scene-frame').boundingBox();
   const before = await frame();
   await changeUnderWay(page);

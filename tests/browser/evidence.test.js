@@ -2,13 +2,12 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, enter, openTab, verdict } from './stage.js';
+import { Stage, enter, openTab, verdict, plain } from './stage.js';
 
 const stage = await Stage.open();
 
 const ask = async (query) => (await fetch(`${stage.url}v1/stability?${query}`)).json();
 /** Numbers of a text, with what comes after them. */
-const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
 const disclose = (page) => page.locator('.evidence:not([open]) summary').click();
 /** What it says once it is opened, without its line for a first look. */
 const words = async (page) => {
@@ -20,8 +19,7 @@ const words = async (page) => {
 const short = (value, digits = 4) => String(Number(value.toPrecision(digits)));
 
 test('rotation, chaos and predictability are told with the server’s numbers', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&tab=why');
-  await verdict(page);
+  const { page, clean } = await stage.judged('?preset=case-1&tab=why');
   const { rotation_number: rotation, chaos } = await ask('preset=case-1');
   const told = await words(page);
   assert.ok(told.includes(`${short(rotation.measured)} turns a bounce`), told);
@@ -38,8 +36,7 @@ test('rotation, chaos and predictability are told with the server’s numbers', 
 test('a chaotic run says so, and for how long it can be predicted', async () => {
   // Released so far aside that the run wanders about between islands before it falls.
   const query = 'preset=case-1&scene.table.tilt_gain=1.15&scene.release.theta=0.365';
-  const { page, clean } = await stage.page(`?${query}&tab=why`);
-  await verdict(page);
+  const { page, clean } = await stage.judged(`?${query}&tab=why`);
   const { chaos, predictable_bounces: predictable } = await ask(query);
   assert.ok(chaos.chaotic && predictable > 0);
   const told = await words(page);
@@ -49,8 +46,7 @@ test('a chaotic run says so, and for how long it can be predicted', async () => 
 });
 
 test('a line tells it for a first look, and what was opened stays open', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&tab=why');
-  await verdict(page);
+  const { page, clean } = await stage.judged('?preset=case-1&tab=why');
   const gist = async () => plain(await page.locator('.evidence summary').innerText());
   const { rotation_number: rotation, chaos } = await ask('preset=case-1');
   assert.equal(
@@ -68,8 +64,7 @@ test('a line tells it for a first look, and what was opened stays open', async (
 
 test('a resonance nearby is named', async () => {
   const query = 'preset=case-1&scene.table.tilt_gain=1.375&scene.release.theta=0.02';
-  const { page, clean } = await stage.page(`?${query}&tab=why`);
-  await verdict(page);
+  const { page, clean } = await stage.judged(`?${query}&tab=why`);
   assert.match(await words(page), /Resonance\s+1\/3: the rotation number is within/);
   clean();
 });
@@ -118,8 +113,7 @@ test('a basin that cannot be asked for can be asked for again', async () => {
 });
 
 test('a point mass has none of it', async () => {
-  const { page, clean } = await stage.page('?preset=point-mass&tab=why');
-  await verdict(page);
+  const { page, clean } = await stage.judged('?preset=point-mass&tab=why');
   assert.equal(await page.locator('.evidence').count(), 0);
   clean();
 });

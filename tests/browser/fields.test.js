@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, changeUnderWay, enter, openPanel, reachImpact, verdict } from './stage.js';
+import { Stage, changeUnderWay, enter, openPanel, verdict, releaseTo } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -81,8 +81,7 @@ test('every field of the settings takes its unit and refuses another kind', asyn
 });
 
 test('while a value is typed nothing changes: not the run, not the address, not undo', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&speed=4&tab=values');
-  await verdict(page);
+  const { page, clean } = await stage.judged('?preset=case-1&speed=4&tab=values');
   const asked = [];
   page.on('request', (request) => asked.push(request.url()));
   const height = page.locator('#field-release-height');
@@ -109,8 +108,7 @@ test('while a value is typed nothing changes: not the run, not the address, not 
   assert.equal(await height.inputValue(), '0.3');
   // A live run hears of the whole number only.
   await changeUnderWay(page);
-  await page.click('#run');
-  await reachImpact(page, 3);
+  await releaseTo(page, 3);
   const gain = page.locator('#field-table-tilt_gain');
   await gain.focus();
   await page.keyboard.press('Control+a');
@@ -127,8 +125,7 @@ test('while a value is typed nothing changes: not the run, not the address, not 
 });
 
 test('a comma that may part thousands is not guessed at, and a decimal one is taken', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&tab=values');
-  await verdict(page);
+  const { page, clean } = await stage.judged('?preset=case-1&tab=values');
   const gravity = page.locator('#field-gravity');
   await enter(page, gravity, '1,625');
   assert.match(
@@ -145,8 +142,7 @@ test('a comma that may part thousands is not guessed at, and a decimal one is ta
 });
 
 test('fields of the panels and of a kick take units and put back as well', async () => {
-  const { page, clean } = await stage.page('?preset=case-1');
-  await verdict(page);
+  const { page, clean } = await stage.judged('?preset=case-1');
   const panels = [
     ['map', '#map-y-to', '20°', String(Number((Math.PI / 9).toPrecision(12)))],
     ['catch', '#catch-hold', '500 ms', '0.5'],
@@ -186,8 +182,7 @@ test('an address of a case that there is not has no verdict', async () => {
 test('a lost connection takes the verdict away, and says what is known', async () => {
   const { page } = await stage.page('?preset=case-1');
   assert.match(await verdict(page), /Stays up/);
-  await page.click('#run');
-  await reachImpact(page, 3);
+  await releaseTo(page, 3);
   await stage.stopServer();
   await page.locator('.notice', { hasText: /Connection lost at .*\d/ }).waitFor();
   assert.doesNotMatch(await page.locator('#notices').innerText(), /goes on/);

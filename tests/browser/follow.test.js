@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { GAIN, Stage, verdict } from './stage.js';
+import { GAIN, Stage } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -24,8 +24,7 @@ const gainIn = async (page) => Number(/κ\s([\d.]+)/.exec(await page.locator('#c
 const falls = (page) => page.locator('#verdict[aria-busy=false]', { hasText: 'Falls' }).waitFor();
 
 test('verdict and preview follow a slider before it is let go, and dearer facts wait until it rests', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&tab=values');
-  await verdict(page);
+  const { page, clean } = await stage.judged('?preset=case-1&tab=values');
   await page.locator('#verdict .facts span').nth(1).waitFor();
   const kinds = {
     verdicts: /stability(?!.*(basin|budget|margins))/,
@@ -68,8 +67,7 @@ test('verdict and preview follow a slider before it is let go, and dearer facts 
 });
 
 test('a slow answer for an old value is given up once the slider rests', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&tab=values');
-  await verdict(page);
+  const { page, clean } = await stage.judged('?preset=case-1&tab=values');
   let held = 0;
   await page.route('**/v1/stability?*tilt_gain=1.2*', async () => {
     // It never answers.

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, ink, pausedRun, reachImpact, reachPhase, slide, speedUp } from './stage.js';
+import { Stage, ink, pausedRun, reachPhase, slide, speedUp, releaseTo } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -93,8 +93,7 @@ test('a table under state feedback has no gain to fork with', async () => {
     '?preset=case-1&scene.table.tilt_gain=null&scene.table.feedback.theta=-2.9&scene.table.feedback.x=0.3&scene.table.feedback.x_dot=0.36&scene.table.feedback.theta_dot=-0.25',
   );
   await page.locator('#scrub').waitFor();
-  await page.click('#run');
-  await reachImpact(page, 1);
+  await releaseTo(page, 1);
   assert.ok(await page.locator('#fork').isDisabled());
   clean();
 });

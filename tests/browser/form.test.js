@@ -2,13 +2,12 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, enter, reachImpact, reachPhase, verdict } from './stage.js';
+import { Stage, enter, reachPhase, verdict, releaseTo } from './stage.js';
 
 const stage = await Stage.open();
 
 test('a value outside its range is refused with the limits, and the one before it stands again', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&tab=values');
-  await verdict(page);
+  const { page, clean } = await stage.judged('?preset=case-1&tab=values');
   const gain = page.locator('#field-table-tilt_gain');
   await enter(page, gain, '5000');
   const error = page.locator('#field-table-tilt_gain-error');
@@ -23,8 +22,7 @@ test('a value outside its range is refused with the limits, and the one before i
 });
 
 test('what is no number is said so, not sent, and the last value is put back by Enter and by leaving it', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&tab=values');
-  await verdict(page);
+  const { page, clean } = await stage.judged('?preset=case-1&tab=values');
   const asked = [];
   page.on('request', (request) => asked.push(request.url()));
   const theta = page.locator('#field-release-theta');
@@ -133,8 +131,7 @@ test('a polygon stays with what is typed beside it, until its vertices are taken
   await enter(page, '#field-table-tilt_gain', '1.05');
   await page.waitForFunction(() => new URLSearchParams(location.search).get('scene.table.tilt_gain') === '1.05');
   assert.equal(new URL(page.url()).searchParams.get('preset'), 'triangle-polygon');
-  await page.click('#run');
-  await reachImpact(page, 1);
+  await releaseTo(page, 1);
   assert.match(page.url(), /preset=triangle-polygon/);
   assert.ok(await page.locator('#field-body-contact_distance').isDisabled());
   clean();
@@ -147,8 +144,7 @@ test('a polygon stays with what is typed beside it, until its vertices are taken
 });
 
 test('an emptied length of the body says that it is needed, with limits and unit, and is put back', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&tab=values');
-  await verdict(page);
+  const { page, clean } = await stage.judged('?preset=case-1&tab=values');
   for (const [path, title, value] of [
     ['contact_distance', 'Contact distance', '0.1333'],
     ['radius_of_gyration', 'Radius of gyration', '0.09428'],
@@ -163,8 +159,7 @@ test('an emptied length of the body says that it is needed, with limits and unit
 });
 
 test('a polygon is typed, runs, and is in the link', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&tab=values');
-  await verdict(page);
+  const { page, clean } = await stage.judged('?preset=case-1&tab=values');
   const vertices = page.locator('#field-body-vertices');
   await vertices.fill('0, 0\n0.1 0.2\n-0.1');
   await vertices.blur();
@@ -180,8 +175,7 @@ test('a polygon is typed, runs, and is in the link', async () => {
   const response = await fetch(`${stage.url}v1/trajectories?${query}&bounces=5`);
   const { model, outcome } = await response.json();
   assert.deepEqual([model.name, outcome.kind], ['polygon', 'completed']);
-  await page.click('#run');
-  await reachImpact(page, 2);
+  await releaseTo(page, 2);
   const second = await stage.page(new URL(page.url()).search);
   assert.equal(await second.page.locator('#field-body-vertices').inputValue(), '0, 0\n0.1, 0.2\n-0.1, 0.2');
   assert.equal(await second.page.locator('#notices').innerText(), '');

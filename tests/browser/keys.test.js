@@ -8,8 +8,7 @@ import { Stage, impacts, reachImpact, reachPhase, tool, verdict } from './stage.
 const stage = await Stage.open();
 
 test('every key does what the list says', async () => {
-  const { page, clean } = await stage.page('');
-  await verdict(page);
+  const { page, clean } = await stage.judged('');
   await page.locator('#keys-list dt').first().waitFor({ state: 'attached' });
   const press = (key) => page.keyboard.press(key);
   for (const [number, preset] of [

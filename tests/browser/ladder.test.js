@@ -2,21 +2,16 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage } from './stage.js';
+import { Stage, plain, cellsOf } from './stage.js';
 
 const stage = await Stage.open();
-const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
-
 function open(query) {
   return stage.page(`${query}#ladder`, { path: 'paper', sign: '.rungs td' });
 }
 
 const asked = async (page) =>
   (await fetch(await page.locator('#ladder-links a', { hasText: 'JSON' }).evaluate((link) => link.href))).json();
-const rows = (page) =>
-  page
-    .locator('.rungs tbody tr')
-    .evaluateAll((all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
+const rows = (page) => cellsOf(page, '.rungs');
 
 for (const preset of ['triangle-polygon', 'case-4', 'point-mass']) {
   test(`${preset}: every rung with what forced it, what it changed and whether it was needed`, async () => {

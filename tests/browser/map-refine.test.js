@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { openMap, place, whole } from './map-steps.js';
 import { gate } from './slow-network.js';
-import { Stage, openPanel, openTab, tool } from './stage.js';
+import { Stage, openPanel, openTab, tool, plain, cellsOf } from './stage.js';
 
 // A server with less work for one map than usual, so that a refusal costs no minute.
 process.env.EQUIPOISE_REGION_WORK = '30000000';
@@ -27,8 +27,6 @@ const unfold = (page) =>
   page.locator('#map-options').evaluate((details) => {
     details.open = true;
   });
-
-const plain = (text) => text.replaceAll(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
 
 test('a map is drawn coarse, finer, and as fine as 384 × 256', async () => {
   const { page, clean } = await stage.page('?preset=case-1&tab=values&map.impacts=200');
@@ -95,7 +93,7 @@ test('cells are told in words: shares, some of them in a table, and the one poin
   await page.locator('#map-options details summary').click();
   const rows = page.locator('#map-options tbody tr');
   await rows.first().waitFor();
-  const cells = await rows.evaluateAll((all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
+  const cells = await cellsOf(page, '#map-options');
   assert.equal(cells.length, 7);
   assert.ok(cells.every((row) => row.length === 8));
   // Upright it survives up to κ_c, and far from it falls.

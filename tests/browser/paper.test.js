@@ -158,20 +158,11 @@ test('a scan lies beside the computed figure or over it, moves by keys, and leav
 
 test('a chapter that the server does not answer can be asked for again', async () => {
   const { page } = await open('', {
-    prepare: () => {
-      const real = globalThis.fetch;
-      globalThis.refuse = true;
-      globalThis.fetch = (input, init) =>
-        globalThis.refuse && String(input).includes('failures')
-          ? Promise.reject(new TypeError('no network'))
-          : real(input, init);
-    },
+    watch: (page) => page.route(/v1\/failures/, (route) => route.abort()),
   });
   await page.locator('#gallery').evaluate((element) => element.scrollIntoView());
   await page.locator('#gallery', { hasText: 'The server does not answer' }).waitFor();
-  await page.evaluate(() => {
-    globalThis.refuse = false;
-  });
+  await page.unroute(/v1\/failures/);
   await page.locator('#gallery button').click();
   await page.locator('#gallery article').first().waitFor();
 });

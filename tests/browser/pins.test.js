@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { GAIN, Stage, ink, reachImpact, reachPhase, slide, speedUp } from './stage.js';
+import { GAIN, Stage, ink, reachImpact, reachPhase, slide, speedUp, releaseTo } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -67,8 +67,7 @@ test('pins go round through the address, a kick on the way included', async () =
   const { page, clean } = await stage.page('?preset=case-1&scene.release.theta=0.2&tab=why');
   await page.locator('#scrub').waitFor();
   await speedUp(page);
-  await page.click('#run');
-  await reachImpact(page, 3);
+  await releaseTo(page, 3);
   await page.locator('#exact input').fill('0.05');
   await page.getByRole('button', { name: 'Kick clockwise' }).click();
   await page.waitForFunction(() => /kick\.theta_dot=-0\.05/.test(location.search));

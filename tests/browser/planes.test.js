@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, enter, ink, inkOf, reachImpact, reachPhase, showChart, speedUp } from './stage.js';
+import { Stage, enter, ink, inkOf, reachImpact, reachPhase, speedUp, runTo, boxOf, releaseTo } from './stage.js';
 
 const stage = await Stage.open();
 const spoken = (page, words) => page.locator('#impacts-spoken', { hasText: words }).waitFor({ state: 'attached' });
@@ -122,24 +122,10 @@ test('runs to compare with have their own symbols and colours, and a legend', as
   });
   await settled(page);
   assert.ok((await scales(page))[0].high >= 0.3);
-  const far = await page.evaluate(() => {
-    const { canvas } = globalThis.plot.layers[0];
-    const copy = Object.assign(document.createElement('canvas'), {
-      width: canvas.width,
-      height: canvas.height,
-    }).getContext('2d', { willReadFrequently: true });
-    copy.drawImage(canvas, 0, 0);
-    const { data } = copy.getImageData(0, 0, canvas.width, canvas.height);
-    const count = ([r, g, b]) => {
-      let found = 0;
-      for (let i = 0; i < data.length; i += 4)
-        if (data[i + 3] > 120 && Math.abs(data[i] - r) + Math.abs(data[i + 1] - g) + Math.abs(data[i + 2] - b) < 20)
-          found += 1;
-      return found;
-    };
-    return { orange: count([0xd5, 0x5e, 0]), green: count([0, 0x9e, 0x73]) };
-  });
-  assert.ok(far.orange > 300 && far.green > 300, JSON.stringify(far));
+  for (const colour of ['--series-1', '--series-2']) {
+    const far = await inkOf(page.locator('#own canvas').first(), colour, { opacity: 120, off: 20 });
+    assert.ok(far > 300, `${colour}: ${far}`);
+  }
   // Its name is spoken anew once a second.
   await page.waitForTimeout(1100);
   await page.evaluate(() => globalThis.plot.redraw());
@@ -159,10 +145,7 @@ test('before a run the planes show the impacts to come of what is typed; the run
   assert.equal(await ink(page, '#plane-angle', '--series-0'), 0);
   const all = await rings();
   await speedUp(page);
-  await page.click('#run');
-  await reachImpact(page, 90);
-  await page.click('#run');
-  await reachPhase(page, 'paused');
+  await runTo(page, 90);
   const left = await rings();
   assert.ok(left < 0.75 * all, `${left} of ${all}`);
   assert.ok((await ink(page, '#plane-angle', '--series-0')) > 200);
@@ -179,11 +162,6 @@ test('dots are larger while they are presented', async () => {
   assert.ok((await ink(page, '#own', '--series-0')) > 1.8 * before);
   clean();
 });
-
-async function boxOf(page, id) {
-  await showChart(page, id);
-  return page.locator(`#${id} .canvas-box`).boundingBox();
-}
 
 test('a click offers a release with its values and impacts; its button, Enter and a second click release it', async () => {
   const { page, clean } = await open();
@@ -252,8 +230,7 @@ test('Escape, the cross, a click elsewhere and an edit drop what is offered', as
 test('a release is offered with keys alone, beside a run that goes on', async () => {
   const { page, clean } = await open();
   await speedUp(page);
-  await page.click('#run');
-  await reachImpact(page, 5);
+  await releaseTo(page, 5);
   await page.locator('#plane-angle .canvas-box').focus();
   await page.keyboard.press('Home');
   await page.keyboard.press('ArrowRight');

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, answersOf, free, measure } from './stage.js';
+import { Stage, answersOf, free, measure, plain, cellsOf } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -11,7 +11,6 @@ async function open(query, options) {
   return { ...opened, answers: await answersOf(opened.page, 'v1/precision?') };
 }
 
-const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
 const marks = (page) => page.locator('#precision-box [data-mark]').count();
 
 test('it is measured when somebody asks, and shows every point that has an error', async () => {
@@ -44,9 +43,7 @@ test('it is measured when somebody asks, and shows every point that has an error
   assert.equal(listed.length, methods.length);
   for (const [index, { title }] of methods.entries()) assert.ok(listed[index].startsWith(title), listed[index]);
   await page.locator('.precision-sheet summary', { hasText: 'Numbers' }).click();
-  const rows = await page
-    .locator('.precision-sheet tbody tr')
-    .evaluateAll((all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
+  const rows = await cellsOf(page, '.precision-sheet');
   assert.equal(rows.length, points.length);
   assert.deepEqual(
     rows.map((row) => Number(plain(row[4]).replaceAll(' ', ''))).filter((steps) => steps < 1e6),
@@ -146,20 +143,11 @@ test('its settings are in the address, and what is broken of them is dropped in 
 
 test('what the server refuses is told, and it can be asked again', async () => {
   const { page } = await open('?preset=case-1', {
-    prepare: () => {
-      const real = globalThis.fetch;
-      globalThis.refuse = true;
-      globalThis.fetch = (input, init) =>
-        globalThis.refuse && String(input).includes('v1/precision')
-          ? Promise.reject(new TypeError('no network'))
-          : real(input, init);
-    },
+    watch: (page) => page.route(/v1\/precision/, (route) => route.abort()),
   });
   await page.fill('#precision-impacts', '10');
   await page.click('#precision-start');
   await page.locator('#precision-told', { hasText: 'The server does not answer' }).waitFor();
-  await page.evaluate(() => {
-    globalThis.refuse = false;
-  });
+  await page.unroute(/v1\/precision/);
   await measure(page);
 });

@@ -2,8 +2,8 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { openRig, plain, text } from './rig-steps.js';
-import { Stage, answersOf, enter, free } from './stage.js';
+import { openRig, text } from './rig-steps.js';
+import { Stage, answersOf, enter, free, plain, cellsOf } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -34,9 +34,7 @@ test('curve, numbers and table are the server’s, for noise of the scene and fo
   );
   const risk = await page.locator('#survival-box [data-row=at-risk] text').allTextContents();
   assert.deepEqual([risk[0], risk.at(-1)], [String(runs), String(survival.at_risk[bounces - 1])]);
-  const rows = await page
-    .locator('.survival-sheet tbody tr')
-    .evaluateAll((all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
+  const rows = await cellsOf(page, '.survival-sheet');
   assert.equal(rows.length, quantiles.n.length);
   for (const [index, row] of rows.entries()) {
     const at = quantiles.n[index] - 1;

@@ -1,11 +1,10 @@
 // Steps of the tests of My rig.
 
 import { readFileSync } from 'node:fs';
-import { answersOf } from './stage.js';
+import { answersOf, plain } from './stage.js';
 
 /** Bounces of a simulated rig: κ = 1.12, ρ = 0.097 m, one bounce missed, one angle wrong. */
 export const RIG = readFileSync(new URL('../../docs/clients/measured.csv', import.meta.url), 'utf8');
-export const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
 export const text = async (page, selector) => plain(await page.locator(selector).innerText());
 
 /** The page with its verdict. @param {string} [address] a query, and a step */

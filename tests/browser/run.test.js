@@ -17,6 +17,8 @@ import {
   slide,
   speedUp,
   verdict,
+  runTo,
+  releaseTo,
 } from './stage.js';
 
 const stage = await Stage.open();
@@ -54,10 +56,7 @@ test('case 1 runs, its impacts arrive, and a gain beyond the critical one turns 
 test('what is drawn is what the server computes', async () => {
   const { page, clean } = await stage.page('?preset=case-4');
   await speedUp(page);
-  await page.click('#run');
-  await reachImpact(page, 12);
-  await page.click('#run');
-  await reachPhase(page, 'paused');
+  await runTo(page, 12);
   const answer = await (await fetch(`${stage.url}v1/trajectories?preset=case-4&bounces=200`)).json();
   const rows = await numbers(page, 'plane-angle');
   assert.ok(rows.length >= 12);
@@ -74,10 +73,7 @@ test('what is drawn is what the server computes', async () => {
 
 test('pause holds the run, step moves it by one impact, a kick is in the address, restart begins again', async () => {
   const { page, clean } = await stage.page('?preset=case-2');
-  await page.click('#run');
-  await reachImpact(page, 3);
-  await page.click('#run');
-  await reachPhase(page, 'paused');
+  await runTo(page, 3);
   await page.waitForTimeout(300);
   const held = await impacts(page);
   await page.waitForTimeout(600);
@@ -87,8 +83,7 @@ test('pause holds the run, step moves it by one impact, a kick is in the address
   await page.click('#step');
   await reachImpact(page, held + 2);
   assert.equal(await impacts(page), held + 2);
-  await page.click('#run');
-  await reachImpact(page, held + 4);
+  await releaseTo(page, held + 4);
   // Some kicks make the body fall within a second, and then there is nothing to kick.
   await page.click('#run');
   await reachPhase(page, 'paused');
@@ -111,8 +106,7 @@ test('pause holds the run, step moves it by one impact, a kick is in the address
 
 test('an edit drops the body anew; with a run under way it waits for what its table cannot change', async () => {
   const { page, clean } = await stage.page('?preset=case-1&tab=values');
-  await page.click('#run');
-  await reachImpact(page, 2);
+  await releaseTo(page, 2);
   const epoch = () => page.evaluate(() => new URLSearchParams(location.search).get('epoch_ms'));
   const before = await epoch();
   await enter(page, '#field-release-theta', '0.05');
@@ -141,8 +135,7 @@ test('a server that goes away and comes back loses no impact, and what was typed
   const { page } = await stage.page('?preset=case-1&tab=values');
   await verdict(page);
   await page.check('#under-way');
-  await page.click('#run');
-  await reachImpact(page, 3);
+  await releaseTo(page, 3);
   await stage.stopServer();
   await page.locator('.notice', { hasText: 'Connection lost' }).waitFor();
   await page.locator('.countdown', { hasText: /\d s/ }).waitFor();
@@ -179,8 +172,7 @@ test('a server that comes back between a try and the question why it failed is n
       };
     },
   });
-  await page.click('#run');
-  await reachImpact(page, 2);
+  await releaseTo(page, 2);
   await stage.stopServer();
   await page.waitForFunction(() => globalThis.asked === 3);
   await stage.startServer();
@@ -225,8 +217,7 @@ test('without frames, as in a hidden tab, nothing is drawn, and all of it on ret
   await showChart(page, 'plane-angle');
   const dotsOf = () => inkOf(page.locator('#plane-angle canvas').first(), '--series-0');
   await speedUp(page);
-  await page.click('#run');
-  await reachImpact(page, 3);
+  await releaseTo(page, 3);
   await page.evaluate(() => globalThis.hide());
   // Polled by time, since there are no frames to poll by.
   const wait = (condition, argument) => page.waitForFunction(condition, argument, { polling: 50 });

@@ -5,7 +5,7 @@ import { execFile } from 'node:child_process';
 import { readFile } from 'node:fs/promises';
 import { promisify } from 'node:util';
 import { test } from 'node:test';
-import { Stage, changedRun, impacts, loadAll, numbers, showChart, verdict } from './stage.js';
+import { Stage, changedRun, impacts, loadAll, numbers, showChart } from './stage.js';
 
 const stage = await Stage.open();
 const shell = promisify(execFile);
@@ -160,8 +160,7 @@ test('every plot is saved as SVG, with a mark for every impact, and as PNG, whic
 });
 
 test('panels open large, come back to their place and size with the focus where it was, and have all that they name to be saved', async () => {
-  const { page, clean } = await stage.page('?preset=case-1');
-  await verdict(page);
+  const { page, clean } = await stage.judged('?preset=case-1');
   const place = (id) =>
     page.evaluate((name) => {
       const { left, top, width, height } = document.getElementById(name).getBoundingClientRect();

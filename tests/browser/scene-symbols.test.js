@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { violations } from './axe.js';
-import { Stage, enter, impacts, ink, openTab, reachImpact, reachPhase, tool, verdict } from './stage.js';
+import { Stage, enter, impacts, ink, inkOf, openTab, reachImpact, tool, verdict, startPaused } from './stage.js';
 
 const stage = await Stage.open();
 const wake = (page) => page.locator('#grab').waitFor();
@@ -35,10 +35,7 @@ test('symbols are drawn by the button and by a key, told in words, and remembere
   await wake(page);
   assert.equal(await page.getAttribute('#symbols', 'aria-pressed'), 'true');
   // At a strike α and β belong to it.
-  await page.click('#run');
-  await reachPhase(page, 'running');
-  await page.click('#run');
-  await reachPhase(page, 'paused');
+  await startPaused(page);
   await page.click('#step');
   await reachImpact(page, 1);
   await page.locator('#symbols-words', { hasText: /α\s[−\d.]+/ }).waitFor({ state: 'attached' });
@@ -57,46 +54,27 @@ test('a point mass has an α and no length', async () => {
 });
 
 test('the first flights of the typed scene are a faint path, which follows a setting', async () => {
-  const { page, clean } = await stage.page('?preset=case-1');
-  await verdict(page);
+  const { page, clean } = await stage.judged('?preset=case-1');
   // Over the level of the table, far from the rod, there is nothing but the grid and the path.
-  const left = () =>
-    page.locator('#scene-frame canvas').evaluate((canvas) => {
-      const { width, height } = canvas;
-      // A copy, since a canvas that is read often loses its speed.
-      const copy = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true });
-      copy.drawImage(canvas, 0, 0);
-      const { data } = copy.getImageData(0, 0, width / 2 - 60, height / 2);
-      const accent = document.createElement('canvas').getContext('2d');
-      accent.fillStyle = getComputedStyle(document.documentElement).getPropertyValue('--accent').trim();
-      accent.fillRect(0, 0, 1, 1);
-      const [r, g, b] = accent.getImageData(0, 0, 1, 1).data;
-      let sum = 0;
-      let across = 0;
-      for (let at = 0; at < data.length; at += 4) {
-        if (data[at + 3] < 30 || Math.abs(data[at] - r) + Math.abs(data[at + 1] - g) + Math.abs(data[at + 2] - b) > 40)
-          continue;
-        sum += 1;
-        across += (at / 4) % (width / 2 - 60);
-      }
-      return { sum, across: across / Math.max(1, sum) };
-    });
+  const canvas = page.locator('#scene-frame canvas');
+  const [width, height] = await canvas.evaluate((element) => [element.width, element.height]);
+  const left = () => inkOf(canvas, '--accent', { margins: [0, 0, width / 2 + 60, height / 2], opacity: 29 });
   await page.waitForFunction(() => document.querySelector('#scene-readout').textContent.includes('Released'));
   let path = await left();
-  for (let tries = 0; path.sum < 60 && tries < 100; tries += 1) {
+  for (let tries = 0; path < 60 && tries < 100; tries += 1) {
     await page.waitForTimeout(100);
     path = await left();
   }
-  assert.ok(path.sum >= 60, JSON.stringify(path));
+  assert.ok(path >= 60, `${path}`);
   await openTab(page, 'values');
   await enter(page, '#field-release-theta', '-0.3');
   // Tilted to the other side it flies to the other side.
   let other = await left();
-  for (let tries = 0; other.sum >= 60 && tries < 100; tries += 1) {
+  for (let tries = 0; other >= 60 && tries < 100; tries += 1) {
     await page.waitForTimeout(100);
     other = await left();
   }
-  assert.ok(other.sum < 60, JSON.stringify(other));
+  assert.ok(other < 60, `${other}`);
   clean();
 });
 
@@ -128,15 +106,8 @@ test('axe finds nothing with the rod in hand and the symbols drawn', async () =>
 });
 
 test('the numbers of a strike stand at one place', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&speed=0.1', {
-    prepare: () => {
-      localStorage['equipoise.symbols'] = 'on';
-    },
-  });
-  await page.click('#run');
-  await reachPhase(page, 'running');
-  await page.click('#run');
-  await reachPhase(page, 'paused');
+  const { page, clean } = await stage.page('?preset=case-1&speed=0.1', { stored: { symbols: 'on' } });
+  await startPaused(page);
   for (let k = 0; k < 3; k += 1) {
     const n = (await impacts(page)) + 1;
     await page.click('#step');
@@ -147,22 +118,9 @@ test('the numbers of a strike stand at one place', async () => {
       n,
     );
     // The right end below the level of the table, which has the right colour only there: the rod is in the middle.
-    const inked = await page.locator('#scene-frame canvas').evaluate((canvas) => {
-      const { width, height } = canvas;
-      const copy = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true });
-      copy.drawImage(canvas, 0, 0);
-      const probe = new OffscreenCanvas(1, 1).getContext('2d');
-      probe.fillStyle = getComputedStyle(document.documentElement).getPropertyValue('--strike').trim();
-      probe.fillRect(0, 0, 1, 1);
-      const [r, g, b] = probe.getImageData(0, 0, 1, 1).data;
-      const { data } = copy.getImageData(width - 190, height - 100, 190, 100);
-      let count = 0;
-      for (let at = 0; at < data.length; at += 4) {
-        const off = Math.abs(data[at] - r) + Math.abs(data[at + 1] - g) + Math.abs(data[at + 2] - b);
-        if (data[at + 3] > 150 && off < 60) count += 1;
-      }
-      return count;
-    });
+    const canvas = page.locator('#scene-frame canvas');
+    const [left, top] = await canvas.evaluate(({ width, height }) => [width - 190, height - 100]);
+    const inked = await inkOf(canvas, '--strike', { margins: [left, top, left, top], opacity: 150, off: 60 });
     assert.ok(inked > 30, `${n}: ${inked}`);
   }
   clean();

@@ -1,7 +1,7 @@
 // Pictures of the page for docs/: `node tests/browser/screenshots.js`, or some of them: `… screenshots.js run rig`.
 
 import { readFile, writeFile } from 'node:fs/promises';
-import { Stage, reachImpact, reachPhase, verdict } from './stage.js';
+import { Stage, verdict, runTo } from './stage.js';
 
 const stage = await Stage.open(null);
 const docs = new URL('../../docs/', import.meta.url);
@@ -17,10 +17,7 @@ async function settled(page) {
 
 /** A run of some bounces, held. @param {import('playwright-core').Page} page @param {number} n */
 async function held(page, n) {
-  await page.click('#run');
-  await reachImpact(page, n);
-  await page.click('#run');
-  await reachPhase(page, 'paused');
+  await runTo(page, n);
 }
 
 /**

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, enter, verdict } from './stage.js';
+import { Stage, enter } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -173,8 +173,7 @@ test('the help has the range of the slider, the limits with their unit, and how 
 });
 
 test('κ_c of the verdict is marked on the track of κ', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&tab=values');
-  await verdict(page);
+  const { page, clean } = await stage.judged('?preset=case-1&tab=values');
   const { margins } = await (await fetch(`${stage.url}v1/stability?preset=case-1`)).json();
   const slider = '#field-table-tilt_gain-slider';
   const mark = page.locator(`.track:has(${slider}) .track-mark`);

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
-import { Stage, reachImpact, reachPhase } from './stage.js';
+import { Stage, reachPhase, releaseTo } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -20,13 +20,10 @@ const sizeOf = (bytes) => [bytes.readUInt32BE(16), bytes.readUInt32BE(20)];
 
 test('pictures and numbers of the run are saved from the menu', async () => {
   const { page, clean } = await stage.page('?preset=case-1&scene.table.tilt_gain=1.2&speed=20', {
-    prepare: () => {
-      localStorage['equipoise.symbols'] = 'on';
-    },
+    stored: { symbols: 'on' },
   });
   await page.locator('#share-open').waitFor();
-  await page.click('#run');
-  await reachImpact(page, 3);
+  await releaseTo(page, 3);
 
   const png = await saved(page, 'save-png');
   assert.equal(png.name, 'equipoise-scene.png');

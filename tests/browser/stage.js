@@ -20,6 +20,11 @@ const FLAGS = [
 ];
 /** The page itself, once its first parts are there. */
 const BEGUN = '#case:enabled';
+/** Choices of most tests: they reach every setting and the time line. */
+const UNFOLDED = {
+  groups: JSON.stringify(['Release', 'Body', 'Table', 'Feedback', 'Limits', 'Noise', 'World']),
+  time: 'on',
+};
 /** Slows the page down by so many times, to find races. */
 const THROTTLE = Number(process.env.THROTTLE ?? 1);
 /** How long a condition may take before a test gives up; no test measures speed by it. */
@@ -99,12 +104,12 @@ export class Stage {
    * A page in a fresh browser profile, and what it did wrong so far.
    * @param {string} query
    * @param {object} options of Playwright's context; `prepare`, which the page runs before its own code; `watch`, which sees the page before
-   * it loads; another `path`, and the `sign` that it is there; `folded` settings; `autorun`, to let it run by itself; `begun`, to take it as
-   * soon as its first parts are there
+   * it loads; another `path`, and the `sign` that it is there; `folded` settings; `autorun`, to let it run by itself; choices that are
+   * `stored` from earlier visits; `begun`, to take it as soon as its first parts are there
    */
   async page(
     query = '',
-    { prepare, path = '', sign = BEGUN, watch, folded = false, autorun = false, begun = false, ...options } = {},
+    { prepare, path = '', sign = BEGUN, watch, folded, autorun, stored, begun = false, ...options } = {},
   ) {
     const context = await this.#browser.newContext({ viewport: { width: 1280, height: 860 }, ...options });
     this.#contexts.push(context);
@@ -129,44 +134,36 @@ export class Stage {
         console.error(`policy: ${event.violatedDirective} ${event.blockedURI}`),
       ),
     );
-    // Tests reach every setting, unless they are about the folding.
-    if (!folded)
-      await page.addInitScript(() => {
-        localStorage['equipoise.groups'] ??= JSON.stringify([
-          'Release',
-          'Body',
-          'Table',
-          'Feedback',
-          'Limits',
-          'Noise',
-          'World',
-        ]);
-      });
-    // The time line is open, unless a test is about that.
-    if (!folded)
-      await page.addInitScript(() => {
+    await page.addInitScript(
+      (choices) => {
         try {
-          localStorage['equipoise.time'] ??= 'on';
+          for (const [name, choice] of Object.entries(choices)) localStorage[`equipoise.${name}`] ??= choice;
         } catch {
           /* a page that may not store anything */
         }
-      });
-    // Most tests begin with a page at rest.
-    if (!autorun)
-      await page.addInitScript(() => {
-        try {
-          localStorage.setItem('equipoise.autorun', 'off');
-        } catch {
-          /* a page that may not store anything */
-        }
-      });
+      },
+      { ...(!folded && UNFOLDED), ...(!autorun && { autorun: 'off' }), ...stored },
+    );
     watch?.(page);
     if (prepare) await page.addInitScript(prepare);
     await page.goto(this.url + path + query);
     await page.locator(sign).first().waitFor();
     if (sign === BEGUN && !begun)
       await page.waitForFunction(() => performance.getEntriesByName('all parts').length > 0);
-    return { page, context, wrongs, clean: () => assert.deepEqual(wrongs, []) };
+    /** Nothing went wrong, but for what is `allowed`. @param {RegExp} [allowed] */
+    const clean = (allowed) =>
+      assert.deepEqual(
+        wrongs.filter((wrong) => !allowed?.test(wrong)),
+        [],
+      );
+    return { page, context, wrongs, clean };
+  }
+
+  /** The same, once it has its verdict. */
+  async judged(query, options) {
+    const opened = await this.page(query, options);
+    await verdict(opened.page);
+    return opened;
   }
 }
 
@@ -220,6 +217,27 @@ export async function verdict(page) {
   return page.locator('.verdict-words').innerText();
 }
 
+/** A text with plain spaces and minus signs. */
+export const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
+
+/** The drawn values of a picture at rest, which has four decimals of the time. */
+export async function poseOf(page) {
+  await drawn(page);
+  await page.locator('#scene-readout', { hasText: /t\s\d+\.\d{4}\ss/ }).waitFor();
+  const words = plain(await page.locator('#scene-readout').innerText());
+  const [t, n, theta, x, y] = /t (\S+) s +bounce (\d+) +θ (\S+) rad +x (\S+) m +y (\S+) m/
+    .exec(words)
+    .slice(1)
+    .map(Number);
+  return { t, n, theta, x, y };
+}
+
+/** The box of a chart on the screen, once it is in view. */
+export async function boxOf(page, id) {
+  await showChart(page, id);
+  return page.locator(`#${id} .canvas-box`).boundingBox();
+}
+
 /** The number of the last impact on the page. */
 export async function impacts(page) {
   const text = await page.locator('#plane-angle .readout').innerText();
@@ -266,10 +284,10 @@ export async function ink(page, selector, property) {
   return inkOf(page.locator(`${selector} canvas`).first(), property);
 }
 
-/** The same of one canvas, within margins (left, top, and both sides together across and down) and above an opacity. */
-export function inkOf(canvas, property, { margins = [0, 0, 0, 0], opacity = 200 } = {}) {
+/** The same of one canvas, within margins (left, top, and both sides together across and down), above an opacity, and less `off` in all. */
+export function inkOf(canvas, property, { margins = [0, 0, 0, 0], opacity = 200, off = 40 } = {}) {
   return canvas.evaluate(
-    (element, [name, least, x, y, narrower, shorter]) => {
+    (element, [name, least, most, x, y, narrower, shorter]) => {
       const probe = document.createElement('canvas').getContext('2d');
       probe.fillStyle = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
       probe.fillRect(0, 0, 1, 1);
@@ -283,11 +301,11 @@ export function inkOf(canvas, property, { margins = [0, 0, 0, 0], opacity = 200 
       const { data } = copy.getImageData(x, y, width - narrower, height - shorter);
       let count = 0;
       for (let i = 0; i < data.length; i += 4)
-        if (data[i + 3] > least && Math.abs(data[i] - r) + Math.abs(data[i + 1] - g) + Math.abs(data[i + 2] - b) < 40)
+        if (data[i + 3] > least && Math.abs(data[i] - r) + Math.abs(data[i + 1] - g) + Math.abs(data[i + 2] - b) < most)
           count += 1;
       return count;
     },
-    [property, opacity, ...margins],
+    [property, opacity, off, ...margins],
   );
 }
 
@@ -309,10 +327,14 @@ export async function numbers(page, id, least = 1) {
     ([chart, rows]) => document.querySelectorAll(`#${chart} tbody tr`).length >= rows,
     [id, least],
   );
-  return page
-    .locator(`#${id} tbody tr`)
-    .evaluateAll((rows) => rows.map((row) => [...row.children].map((cell) => cell.textContent)));
+  return cellsOf(page, `#${id}`);
 }
+
+/** The texts of a table, row by row. */
+export const cellsOf = (page, table) =>
+  page
+    .locator(`${table} tbody tr`)
+    .evaluateAll((rows) => rows.map((row) => [...row.children].map((cell) => cell.textContent)));
 
 /** Moves a slider as a hand would, from its first value to its last. */
 export async function slide(page, selector, value) {
@@ -390,16 +412,34 @@ export async function loadAll(page, look) {
   }
 }
 
+/** Releases a run, or goes on with one, until there are so many impacts. */
+export async function releaseTo(page, n) {
+  await page.click('#run');
+  await reachImpact(page, n);
+}
+
+/** The same, and pauses it. */
+export async function runTo(page, n) {
+  await releaseTo(page, n);
+  await page.click('#run');
+  await reachPhase(page, 'paused');
+}
+
+/** Releases a run, and pauses it at once. */
+export async function startPaused(page) {
+  await page.click('#run');
+  await reachPhase(page, 'running');
+  await page.click('#run');
+  await reachPhase(page, 'paused');
+}
+
 /** A run with at least so many impacts, paused. */
 export async function pausedRun(stage, query, n, options = {}) {
   const opened = await stage.page(query, options);
   const { page } = opened;
   await page.locator('#scrub').waitFor();
   await speedUp(page);
-  await page.click('#run');
-  await reachImpact(page, n);
-  await page.click('#run');
-  await reachPhase(page, 'paused');
+  await runTo(page, n);
   // The bounce before the pause may not be drawn yet.
   await drawn(page);
   return opened;

@@ -13,23 +13,14 @@ import {
   reachPhase,
   slide,
   speedUp,
+  poseOf,
+  releaseTo,
 } from './stage.js';
 
 const stage = await Stage.open();
 
 /** A paused run of case 1 with so many impacts. */
 const paused = (n, query = '?preset=case-1', options = {}) => pausedRun(stage, query, n, options);
-
-/** The drawn values, as the scene tells them. */
-async function drawn(page) {
-  await page.locator('#scene-readout', { hasText: /t\s\d+\.\d{4}\ss/ }).waitFor();
-  const words = (await page.locator('#scene-readout').innerText()).replaceAll('\u2212', '-');
-  const [t, n, theta, x, y] = /t\s(\S+)\ss\s+bounce\s(\d+)\s+θ\s(\S+)\srad\s+x\s(\S+)\sm\s+y\s(\S+)\sm/
-    .exec(words)
-    .slice(1)
-    .map(Number);
-  return { t, n, theta, x, y };
-}
 
 /** The impact that the angle plane marks. */
 const marked = impacts;
@@ -52,7 +43,7 @@ test('scrubbing back draws the flight in closed form and asks nothing of the ser
     (n) => Number(/^n\s(\d+)/.exec(document.querySelector('#plane-angle .readout').textContent)?.[1]) < n,
     last,
   );
-  const { t, n, theta, x, y } = await drawn(page);
+  const { t, n, theta, x, y } = await poseOf(page);
   const { impacts: all, scene } = await (await fetch(`${stage.url}v1/trajectories?preset=case-1&bounces=100`)).json();
   const [before, after] = [n - 1, n];
   assert.ok(n >= 2 && n < last, `${n} lies in the past`);
@@ -75,7 +66,7 @@ test('stepping back goes from strike to strike, the past plays and holds, and st
   const { page, clean } = await paused(6);
   const last = await marked(page);
   await page.click('#step-back');
-  assert.equal((await drawn(page)).n, last);
+  assert.equal((await poseOf(page)).n, last);
   for (const n of [last - 1, last - 2]) {
     await page.click('#step-back');
     await page.locator('#timeline-told', { hasText: new RegExp(`n\\s${n}\\s`) }).waitFor();
@@ -107,8 +98,7 @@ test('stepping back goes from strike to strike, the past plays and holds, and st
 test('the run goes on while its past is shown, and Back to now shows it again', async () => {
   const { page, clean } = await stage.page('?preset=case-2');
   await page.locator('#scrub').waitFor();
-  await page.click('#run');
-  await reachImpact(page, 3);
+  await releaseTo(page, 3);
   assert.equal(await page.locator('#to-now').getAttribute('aria-disabled'), 'true');
   await page.locator('#scrub').focus();
   await page.keyboard.press('Home');
@@ -173,7 +163,7 @@ test('a finger drags the bar', async () => {
   for (const share of [0.8, 0.6, 0.3])
     await touch.send('Input.dispatchTouchEvent', { type: 'touchMove', touchPoints: at(share) });
   await touch.send('Input.dispatchTouchEvent', { type: 'touchEnd', touchPoints: [] });
-  const { n } = await drawn(page);
+  const { n } = await poseOf(page);
   assert.ok(n > 0 && n < last - 3, `impact ${n} of ${last}`);
   clean();
 });
@@ -182,8 +172,7 @@ test('kicks, changes and the end of the run are marked', async () => {
   const { page, clean } = await stage.page('?preset=case-1&scene.release.theta=0.2');
   await page.locator('#scrub').waitFor();
   await speedUp(page);
-  await page.click('#run');
-  await reachImpact(page, 3);
+  await releaseTo(page, 3);
   await page.getByRole('button', { name: 'Kick to the left' }).click();
   await page.waitForFunction(() => /kick\.x_dot=-0\.1/.test(location.search));
   await changeUnderWay(page);

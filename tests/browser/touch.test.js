@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, reachImpact, reachPhase, showChart, speedUp } from './stage.js';
+import { Stage, reachImpact, showChart, speedUp, runTo } from './stage.js';
 
 const stage = await Stage.open();
 const PHONE = { viewport: { width: 820, height: 900 }, hasTouch: true, isMobile: true, deviceScaleFactor: 1 };
@@ -45,10 +45,7 @@ async function running(query) {
   const { page } = opened;
   await page.locator('#plane-angle .canvas-box[aria-describedby]').waitFor({ state: 'attached' });
   await speedUp(page);
-  await page.click('#run');
-  await reachImpact(page, 20);
-  await page.click('#run');
-  await reachPhase(page, 'paused');
+  await runTo(page, 20);
   await showChart(page, 'plane-angle');
   return opened;
 }

@@ -2,19 +2,17 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { GAIN, Stage, changeUnderWay, enter, reachImpact, reachPhase, slide, speedUp, verdict } from './stage.js';
+import { GAIN, Stage, changeUnderWay, enter, reachPhase, slide, speedUp, verdict, plain, releaseTo } from './stage.js';
 
 const stage = await Stage.open();
 
-const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
 const thisRun = async (page) => plain(await page.locator('#this-run').innerText());
 
 test('the setting stays up in plain words, with the field’s term and the evidence below', async () => {
   const { page, clean } = await stage.page('?preset=case-1&tab=why');
   assert.match(await verdict(page), /Stays up\s+Elliptic; 2000 bounces of a fresh release survived/);
   assert.doesNotMatch(plain(await page.locator('#verdict-card').innerText()), /this run ended|_gain|\bnull\b/);
-  await page.click('#run');
-  await reachImpact(page, 2);
+  await releaseTo(page, 2);
   assert.match(await thisRun(page), /^This run\s+Bounce \d+\s+Angle/);
   // Its place, which the words of an end take, tells how far it has gone.
   await page.click('#run');
@@ -31,8 +29,7 @@ test('the setting stays up in plain words, with the field’s term and the evide
 });
 
 test('a run that falls says so in its own line, and nothing moves', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&scene.table.tilt_gain=1.49&tab=why');
-  await verdict(page);
+  const { page, clean } = await stage.judged('?preset=case-1&scene.table.tilt_gain=1.49&tab=why');
   // All buttons of the scene's card are there.
   await page.locator('#keys-list dt').first().waitFor({ state: 'attached' });
   const boxes = () =>
@@ -64,8 +61,7 @@ test('a fall after a kick leaves the verdict on the setting as it was', async ()
   const { page, clean } = await stage.page('?preset=case-1&scene.release.theta=0.05&tab=why');
   assert.match(await verdict(page), /Stays up/);
   await speedUp(page);
-  await page.click('#run');
-  await reachImpact(page, 4);
+  await releaseTo(page, 4);
   await page.locator('#exact input').fill('4');
   await page.click('#kick');
   await page.waitForFunction(() => /kick\.theta_dot=4/.test(location.search));
@@ -81,8 +77,7 @@ test('a fall after a kick leaves the verdict on the setting as it was', async ()
 test('a fall after a change names what was changed', async () => {
   const { page, clean } = await stage.page('?preset=case-1&scene.release.theta=0.2&tab=why');
   await speedUp(page);
-  await page.click('#run');
-  await reachImpact(page, 4);
+  await releaseTo(page, 4);
   await changeUnderWay(page);
   await slide(page, GAIN, 1.7);
   await reachPhase(page, 'ended');
@@ -92,8 +87,7 @@ test('a fall after a change names what was changed', async () => {
 });
 
 test('no verdict stands beside a scene that there is not, and its message leads to the field', async () => {
-  const { page, wrongs } = await stage.page('?preset=case-1&tab=why');
-  await verdict(page);
+  const { page, clean } = await stage.judged('?preset=case-1&tab=why');
   const held = async () => {
     await page.locator('#verdict[aria-busy=false]', { hasText: /^– No verdict/ }).waitFor();
     assert.ok(await page.locator('#verdict-more').evaluate((more) => more.hidden));
@@ -113,10 +107,7 @@ test('no verdict stands beside a scene that there is not, and its message leads 
   await enter(page, '#field-release-height', '0.2');
   await renewed();
   // The browser itself notes every refusal by the server.
-  assert.deepEqual(
-    wrongs.filter((wrong) => !/status of 422/.test(wrong)),
-    [],
-  );
+  clean(/status of 422/);
 });
 
 for (const query of [

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { GAIN, Stage, changedRun, enter, reachImpact, reachPhase, showChart, slide, speedUp, tool } from './stage.js';
+import { GAIN, Stage, changedRun, enter, reachPhase, showChart, slide, speedUp, tool, releaseTo } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -96,8 +96,7 @@ test('each drop is undone, by an edit, on the map, of a bounce in a plane, and b
   await ready(page);
   await page.locator('#map-box[aria-busy=false] canvas').first().waitFor();
   await speedUp(page);
-  await page.click('#run');
-  await reachImpact(page, 3);
+  await releaseTo(page, 3);
   await holds(page, () => /epoch/.test(location.search));
   const { epoch_ms: epoch } = await address(page);
   const theta = () => page.inputValue('#field-release-theta');

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, enter, impacts, numbers, openPanel, openTab, reachImpact, reachPhase, tool, verdict } from './stage.js';
+import { Stage, enter, impacts, numbers, openPanel, openTab, tool, verdict, runTo } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -18,8 +18,7 @@ function asked(page) {
 }
 
 test('readouts, axes, tables and the verdict follow the switch, and no request changes', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&scene.release.theta=0.2345678901234567');
-  await verdict(page);
+  const { page, clean } = await stage.judged('?preset=case-1&scene.release.theta=0.2345678901234567');
   // The last fact on it is there too.
   await page.locator('#verdict .facts', { hasText: 'ends it' }).waitFor();
   const requests = asked(page);
@@ -31,10 +30,7 @@ test('readouts, axes, tables and the verdict follow the switch, and no request c
   assert.match(await page.locator('#scene-readout').innerText(), /θ\s13\.44°/);
   await page.waitForFunction(() => /°/.test(document.querySelector('#verdict-more').textContent));
   assert.doesNotMatch(await numbersOf(), /rad\b/);
-  await page.click('#run');
-  await reachImpact(page, 3);
-  await page.click('#run');
-  await reachPhase(page, 'paused');
+  await runTo(page, 3);
   await openTab(page, 'why');
   assert.match(await page.locator('#plane-angle .readout').innerText(), /θ\s.+°\s.*θ̇\s.+°\/s/);
   const n = await impacts(page);
@@ -51,8 +47,7 @@ test('readouts, axes, tables and the verdict follow the switch, and no request c
 });
 
 test('the choice is remembered, a link keeps it, and another reader’s choice stays', async () => {
-  const { page, clean } = await stage.page('?preset=case-1');
-  await verdict(page);
+  const { page, clean } = await stage.judged('?preset=case-1');
   assert.doesNotMatch(page.url(), /angles/);
   await tool(page, 'units');
   await page.waitForFunction(() => new URLSearchParams(location.search).get('angles') === 'deg');
@@ -71,8 +66,7 @@ test('the choice is remembered, a link keeps it, and another reader’s choice s
 });
 
 test('an angle may be typed in degrees at any time, and a field that is not edited keeps its value exactly', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&scene.release.theta=0.2345678901234567&tab=values');
-  await verdict(page);
+  const { page, clean } = await stage.judged('?preset=case-1&scene.release.theta=0.2345678901234567&tab=values');
   const theta = page.locator('#field-release-theta');
   const typed = () => page.evaluate(() => Number(new URLSearchParams(location.search).get('scene.release.theta')));
   const reach = (value) =>
@@ -117,8 +111,7 @@ test('an angle may be typed in degrees at any time, and a field that is not edit
 });
 
 test('the ends of the map and the spin of a kick are in the unit that is shown', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&angles=deg');
-  await verdict(page);
+  const { page, clean } = await stage.judged('?preset=case-1&angles=deg');
   await openPanel(page, 'map');
   await page.click('#map-options > summary');
   assert.equal(Number(await page.inputValue('#map-y-to')).toFixed(4), ((0.5 * 180) / Math.PI).toFixed(4));
@@ -132,10 +125,9 @@ test('the ends of the map and the spin of a kick are in the unit that is shown',
 });
 
 test('the server’s sentences name fields by their titles, and no unit is no words', async () => {
-  const { page, clean } = await stage.page(
+  const { page, clean } = await stage.judged(
     '?preset=case-1&scene.noise.timing_sd=0.01&scene.noise.model=strike&scene.table.limits.tilt_rate=3',
   );
-  await verdict(page);
   const text = await page.locator('main').evaluate((main) => main.textContent);
   assert.match(text, /[Tt]iming noise is 0\.01/);
   assert.doesNotMatch(text, /timing_sd|tilt_gain|contact_distance| is null|\(no unit\)/);
