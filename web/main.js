@@ -3,7 +3,7 @@
 import { get, server } from './api/client.js';
 import { Page } from './app/page.js';
 import { showRun, watchRun } from './app/run-watcher.js';
-import { beginAutorun, choose, plain, restore } from './app/scenes.js';
+import { choose, plain, restore } from './app/scenes.js';
 import { byId, h } from './dom/elements.js';
 import { clearNotice, notice } from './dom/notices.js';
 import { knowTitles } from './dom/typeset.js';
@@ -34,7 +34,6 @@ async function begin() {
   byId('build').textContent = server.build;
   restore(page, location.search);
   showRun(page);
-  beginAutorun(page);
   // The first look is drawn in the next frame; what nobody sees yet comes after.
   await new Promise((resolve) => requestAnimationFrame(resolve));
   performance.mark('first plot');

@@ -41,8 +41,6 @@ export class Page extends TypedScene {
   history = null;
   /** True for a run that began without being asked for: the address names its scene only, until somebody acts on it. */
   byItself = false;
-  /** An address without a run was opened. */
-  opened = () => {};
   /** Marks the critical gain on its track, once that is there. */
   markGain = () => {};
   /** The newest verdict. @type {Judged | null} */

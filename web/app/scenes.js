@@ -1,6 +1,6 @@
 // Brings a scene to the page: a case, that of the address, or that of a panel; names it, and runs it by itself where that is wanted.
 
-import { remember, remembered } from '../api/remembered.js';
+import { remembered } from '../api/remembered.js';
 import { differences, setAt } from '../api/scene-fields.js';
 import { sceneQuery } from '../api/scene-query.js';
 import { titlesOf } from '../api/settings.js';
@@ -103,7 +103,7 @@ export function restore(page, search) {
   if (!link.run) {
     present(page, scene);
     page.unknown = link.unknown;
-    return page.opened();
+    return runByItself(page);
   }
   for (const [key, value] of link.run) query.set(key, value);
   query.set('speed', String(page.speed));
@@ -150,7 +150,7 @@ export function restoreState(page, { scene, releasedAs, chosen, run: wanted }) {
   run.start(new URLSearchParams([...own, ...[...(before ?? [])].filter(clock)]));
 }
 
-const AUTORUN = 'equipoise.autorun';
+export const AUTORUN = 'equipoise.autorun';
 
 /** True where scenes run without being asked to. */
 export const runsByItself = () => remembered(AUTORUN, true) && !matchMedia('(prefers-reduced-motion: reduce)').matches;
@@ -163,13 +163,4 @@ function runByItself(page) {
     page.start();
     page.byItself = true;
   });
-}
-
-/** @param {Page} page */
-export function beginAutorun(page) {
-  const on = byId('autorun-on', HTMLInputElement);
-  on.checked = remembered(AUTORUN, true);
-  on.addEventListener('change', () => remember(AUTORUN, on.checked));
-  page.opened = () => runByItself(page);
-  page.opened();
 }

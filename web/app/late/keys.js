@@ -5,6 +5,7 @@ import { TYPED_IN, byId, h, pressedIn } from '../../dom/elements.js';
 import STORIES from '../../play/stories.json' with { type: 'json' };
 import { tell } from '../../play/tell.js';
 import { FASTEST, SLOWEST } from '../../run/interventions.js';
+import { AUTORUN } from '../scenes.js';
 import { saveCsv } from './share.js';
 
 /** The keys, their label, their name, and the action. @typedef {[keys: string, label: string, name: string, act: (key: string) => void]} Key */
@@ -56,12 +57,19 @@ const keysOf = (page) => [
   ['?', '?', 'Show these keys', () => byId('keys', HTMLDialogElement).showModal()],
 ];
 
+/** A box that stays as it is in later visits. @param {string} id @param {string} stored */
+function keptBox(id, stored) {
+  const box = byId(id, HTMLInputElement);
+  box.checked = remembered(stored, true);
+  box.addEventListener('change', () => remember(stored, box.checked));
+  return box;
+}
+
 /** @param {Page} page */
 export function listenToKeys(page) {
   const dialog = byId('keys', HTMLDialogElement);
-  const on = byId('keys-on', HTMLInputElement);
-  on.checked = remembered(STORED, true);
-  on.addEventListener('change', () => remember(STORED, on.checked));
+  const on = keptBox('keys-on', STORED);
+  keptBox('autorun-on', AUTORUN);
   const all = keysOf(page);
   byId('keys-list').append(
     ...all.map(([, label, name]) => h('div', {}, h('dt', {}, h('kbd', {}, label)), h('dd', {}, name))),
