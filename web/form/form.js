@@ -11,7 +11,7 @@ import { parse, unitsFor } from '../dom/typed-number.js';
 import { inWords } from '../dom/typeset.js';
 import { UNITS, angles, shownFactor, shownUnit, shownValue } from '../dom/units.js';
 import { useAnswer } from '../panels/ask.js';
-import { sign } from '../panels/parts.js';
+import { Choice, sign } from '../panels/parts.js';
 import { html, render, useLayoutEffect, useMemo, useRef, useState } from '../vendor/preact/preact.js';
 import { firstValue, shownRange, sliderStep, steady } from './sliders.js';
 import { TypedScene } from './typed-scene.js';
@@ -427,14 +427,12 @@ const common = ({ id, off, said }) => ({
 });
 
 /** @param {RowProps & {id: string}} props */
-function Choice(props) {
+function OneOf(props) {
   const { form, field, value } = props;
-  const choose = (/** @type {Event} */ event) =>
-    form.set(field.field, /** @type {HTMLSelectElement} */ (event.currentTarget).value || undefined, true);
-  return html`<select ...${common(props)} value=${String(value ?? field.default ?? '')} onChange=${choose}>
-    ${field.default == null && html`<option value="">not set</option>`}
-    ${field.choices?.map((choice) => html`<option value=${choice}>${choice.replaceAll('_', ' ')}</option>`)}
-  </select>`;
+  const named = (field.choices ?? []).map((choice) => [choice, choice.replaceAll('_', ' ')]);
+  const choices = Object.fromEntries(field.default == null ? [['', 'not set'], ...named] : named);
+  const choose = (/** @type {string} */ choice) => form.set(field.field, choice || undefined, true);
+  return html`<${Choice} ...${common(props)} value=${String(value ?? field.default ?? '')} choices=${choices} changed=${choose} />`;
 }
 
 /** @param {RowProps & {id: string}} props */
@@ -551,7 +549,7 @@ function Numeric(props) {
 }
 
 const CONTROLS = {
-  choice: Choice,
+  choice: OneOf,
   boolean: YesNo,
   vertices: Lines,
   numbers: Lines,

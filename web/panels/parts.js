@@ -229,10 +229,10 @@ export function NumberField(props) {
 
 /**
  * A field of choices.
- * @param {{id: string, label?: string, value: string, choices: Record<string, Child>, disabled?: boolean, changed: (value: string) => void}} props
+ * @param {{label?: string, value: string, choices: Record<string, Child>, changed: (value: string) => void, [attribute: string]: unknown}} props
  */
-export const Choice = ({ id, label, value, choices, disabled, changed }) =>
-  html`<select id=${id} aria-label=${label} value=${value} disabled=${disabled}
+export const Choice = ({ label, value, choices, changed, ...attributes }) =>
+  html`<select ...${attributes} aria-label=${label} value=${value}
     onChange=${(/** @type {Event} */ { currentTarget }) => changed(/** @type {HTMLSelectElement} */ (currentTarget).value)}>
     ${Object.entries(choices).map(([name, said]) => html`<option value=${name} selected=${name === value}>${said}</option>`)}
   </select>`;
