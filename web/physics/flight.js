@@ -8,6 +8,13 @@ const SMALL = 1e-5;
 /** In the plane, m/s². @param {Scene} scene */
 export const effectiveGravity = (scene) => derivedOf(scene).gravity_in_plane;
 
+/** The flight from the release of a scene. @param {Scene} scene @param {number} duration s @returns {Arc} */
+export function arcFrom({ release = {} }, duration) {
+  const { x = 0, height: y = 0, x_dot = 0, y_dot = 0, theta, theta_dot } = release;
+  // A point mass has no angle.
+  return { t: 0, x, y, theta: theta ?? 0, x_dot, y_dot, theta_dot: theta_dot ?? 0, duration };
+}
+
 /** The flight after an impact. @param {Impact} impact @param {Scene} scene @returns {Arc} */
 export function arcAfter(impact, scene) {
   const still = Number.isNaN(impact.y_dot_after);

@@ -3,7 +3,7 @@
 import { h } from '../dom/elements.js';
 import { fixed, fixedQuantity, number, quantity } from '../dom/numbers.js';
 import { contactDistance, drawable } from '../physics/body.js';
-import { poseOn } from '../physics/flight.js';
+import { arcFrom, poseOn } from '../physics/flight.js';
 import { World, drawFlights } from './world.js';
 
 const stillness = matchMedia('(prefers-reduced-motion: reduce)');
@@ -145,10 +145,9 @@ export class SceneView extends World {
 
   /** The pose of the typed scene on its first fall, held where the contact point meets the table; at its release before it is dropped. @param {Scene} scene @param {number} now_ms */
   #fallen(scene, now_ms) {
-    const { x = 0, height = 0, theta = 0, x_dot = 0, y_dot = 0, theta_dot = 0 } = scene.release ?? {};
+    const arc = arcFrom(scene, Infinity);
     const l = contactDistance(scene);
-    const y = Math.max(height, l * Math.cos(theta));
-    const arc = { t: 0, x, y, theta, x_dot, y_dot, theta_dot, duration: Infinity };
+    arc.y = Math.max(arc.y, l * Math.cos(arc.theta));
     const { since_ms, speed } = this.#falls ?? { since_ms: now_ms, speed: 1 };
     let t = Math.max(0, (speed * (now_ms - since_ms)) / 1000);
     let pose = poseOn(arc, t, scene);

@@ -1,7 +1,7 @@
 // Runs beside the live one: computed by the server to their end, drawn by the same closed forms and on the same clock.
 
 import { get } from '../api/client.js';
-import { decay, effectiveGravity, windPush } from '../physics/flight.js';
+import { arcFrom, decay, effectiveGravity, windPush } from '../physics/flight.js';
 import { fromColumns } from '../run/impacts.js';
 import { interventionsOf } from '../run/interventions.js';
 import { RunState } from '../run/run-state.js';
@@ -18,21 +18,12 @@ export async function computedRun(query, bounces, signal) {
   const answer = await get(`v1/trajectories?${query}&bounces=${bounces}`, signal);
   const run = new RunState(answer.impacts.n.length);
   const impacts = /** @type {Record<string, (number | null)[]>} */ (/** @type {unknown} */ (answer.impacts));
-  const { release, air } = answer.scene;
+  const { air } = answer.scene;
   run.released = { ...answer.scene, derived: answer.derived };
   run.interventions = interventionsOf(query);
   run.outcome = answer.outcome;
   run.phase = 'ended';
-  run.fall = {
-    t: 0,
-    x: release.x,
-    y: release.height,
-    theta: release.theta ?? 0,
-    x_dot: release.x_dot,
-    y_dot: release.y_dot,
-    theta_dot: release.theta_dot ?? 0,
-    duration: impacts.t[0] ?? 0,
-  };
+  run.fall = arcFrom(answer.scene, impacts.t[0] ?? 0);
   /** @param {(number | null)[]} column @param {number | undefined} rate @param {number} pull */
   const after = (column, rate, pull = 0) =>
     [...column.slice(1), null].map((speed, row) => {
