@@ -1,21 +1,4 @@
-// Requests that follow what changes: only the newest of several goes on, or one after the other at a pace.
-
-export class LatestRequest {
-  /** @type {AbortController | null} */
-  #controller = null;
-
-  /** Cancels the request before. @returns {AbortSignal} for the next one */
-  next() {
-    this.cancel();
-    this.#controller = new AbortController();
-    return this.#controller.signal;
-  }
-
-  cancel() {
-    this.#controller?.abort();
-    this.#controller = null;
-  }
-}
+// Requests that follow what changes, one after the other at a pace.
 
 /** Least time between two requests of a kind, ms. */
 const PACE_MS = 60;
@@ -47,6 +30,14 @@ export class Follower {
   /** Gives up an answer that is out of date, so that the newest is not kept waiting. */
   hurry() {
     if (this.#wanted) this.#request?.abort();
+  }
+
+  /** Gives up what is asked for. */
+  cancel() {
+    clearTimeout(this.#timer);
+    this.#timer = undefined;
+    this.#wanted = null;
+    this.#request?.abort();
   }
 
   #next() {

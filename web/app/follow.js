@@ -1,7 +1,7 @@
 // Asks for the verdict and for a preview of the typed scene while it changes: one request of each kind at a time, always for the newest.
 
 import { Problem, get, server, wordsOf } from '../api/client.js';
-import { Follower, LatestRequest } from '../api/latest-request.js';
+import { Follower } from '../api/latest-request.js';
 import { pathOf } from '../api/scene-fields.js';
 import { missing } from '../api/settings.js';
 import { byId } from '../dom/elements.js';
@@ -43,12 +43,13 @@ export function beginToFollow(page) {
     if (page.judged === judged && budget) verdict.tell([gains, firstLoss(budget)]);
   };
 
-  const facts = new LatestRequest();
+  // Without them the verdict stands alone.
+  const facts = new Follower((_, signal) => tellFacts(signal).catch(() => {}));
   /** The facts beside the verdict are dearer than it, so they wait for the scene to settle. */
   const tellMore = debounce(QUIET_MS, () => {
     page.markGain();
-    // Without them the verdict stands alone.
-    tellFacts(facts.next()).catch(() => {});
+    facts.cancel();
+    facts.want(null);
   });
 
   const verdicts = new Follower(async (_, signal, newest) => {

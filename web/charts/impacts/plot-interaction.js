@@ -1,7 +1,7 @@
 // The interaction with all charts of the bounces: one selection, one bounce pointed at, a start by a click.
 
 import { Problem } from '../../api/client.js';
-import { LatestRequest } from '../../api/latest-request.js';
+import { Follower } from '../../api/latest-request.js';
 import { launch } from '../../app/scenes.js';
 import { byId, h, pressedIn } from '../../dom/elements.js';
 import { contactDistance } from '../../physics/body.js';
@@ -110,7 +110,6 @@ const OWN_ENTER = 'a, button, input, select, textarea, summary, dialog, [tabinde
 export function bringReleases(page, say) {
   /** @type {{plot: ImpactPlot, at: Values, values: Record<string, number>, words: string} | null} */
   let offered = null;
-  const asking = new LatestRequest();
   const words = h('p', {});
   const slip = h(
     'div',
@@ -131,9 +130,8 @@ export function bringReleases(page, say) {
     }
   };
 
-  /** Asks for the impacts. @param {Record<string, number>} values */
-  const follow = async (values) => {
-    const signal = asking.next();
+  /** Asks for the impacts. */
+  const asks = new Follower(async (/** @type {Record<string, number>} */ values, signal) => {
     const query = page.typedQuery;
     if (!query) return;
     for (const [path, value] of Object.entries(values)) query.set(`scene.${path}`, String(value));
@@ -147,7 +145,7 @@ export function bringReleases(page, say) {
       if (!signal.aborted && error instanceof Problem && error.errors.length > 0)
         words.textContent = error.errors.map(({ detail }) => detail).join(' ');
     }
-  };
+  });
 
   /** The release with this first impact; null while some of the typed scene is no value, or in a plot without releases. @param {ImpactPlot} plot @param {Values} first */
   const startAt = ({ meaning: { start } }, { x, y }) => {
@@ -171,12 +169,13 @@ export function bringReleases(page, say) {
     plot.figure.box.append(slip);
     show(null);
     say(`${told}. Enter releases there, Escape drops it.`);
-    void follow(values);
+    asks.cancel();
+    asks.want(values);
   };
 
   const drop = () => {
     if (!offered) return;
-    asking.cancel();
+    asks.cancel();
     const { box } = offered.plot.figure;
     offered = null;
     const focused = slip.contains(document.activeElement);
