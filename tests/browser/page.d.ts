@@ -124,10 +124,8 @@ interface Reference {
 
 /** A release that is offered. */
 interface Offered {
-  /** The place of its first impact; null while that is not known. */
+  /** The place that was clicked; null in another plot, which marks the first impact. */
   at: { x: number; y: number } | null;
-  /** True in the plot that was clicked. */
-  clicked: boolean;
   /** Null while it is awaited. */
   run: RunState | null;
 }

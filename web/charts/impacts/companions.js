@@ -103,7 +103,7 @@ export class ComparingPlot extends CanvasView {
     };
     hold(this.#preview);
     for (const { points } of this.#references) hold(points);
-    if (extent.x.low > extent.x.high && this.#ghost && !this.#ghost.clicked) hold(this.#ghost.points);
+    if (extent.x.low > extent.x.high && this.#ghost && !this.#ghost.at) hold(this.#ghost.points);
   }
 
   /** Under the dots. @param {Surface} surface */
@@ -129,8 +129,9 @@ export class ComparingPlot extends CanvasView {
         context.arc(x, y, RING, 0, 2 * Math.PI);
       }
       surface.faintly(0.7, () => surface.stroke(ghost ? 'accent' : 'muted'));
-      if (!ghost?.at) return;
-      const [x, y] = [toX(frame, ghost.at.x), toY(frame, ghost.at.y)];
+      const at = ghost?.at ?? ghost?.points[0];
+      if (!at) return;
+      const [x, y] = [toX(frame, at.x), toY(frame, at.y)];
       surface.disc(x, y, 8, { fill: 'surface', stroke: 'accent', width: 2, dashes: [4, 3] });
       surface.line('accent', x - 4, y, x + 4, y, { width: 2 });
       surface.line('accent', x, y - 4, x, y + 4, { width: 2 });

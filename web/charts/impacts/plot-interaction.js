@@ -121,13 +121,7 @@ export function bringReleases(page, say) {
 
   /** @param {RunState | null} run */
   const show = (run) => {
-    const first = run && run.impacts.end > 0 ? run.impacts.row(0) : null;
-    for (const plot of page.plots) {
-      const { x, y } = plot.meaning;
-      const clicked = plot === offered?.plot;
-      const at = clicked ? (offered?.at ?? null) : first && { x: first[x.column], y: first[y.column] };
-      plot.ghost({ at, clicked, run });
-    }
+    for (const plot of page.plots) plot.ghost({ run, at: offered?.plot === plot ? offered.at : null });
   };
 
   /** Asks for the impacts. */
