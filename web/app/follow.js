@@ -23,7 +23,7 @@ export function beginToFollow(page) {
 
   /** Tells why there is no verdict on what is on the screen. @param {string} words @param {string} label @param {() => void} act */
   const hold = (words, label, act) => {
-    verdict.hold(words, label, act);
+    verdict.tell({ held: { words, label, act }, busy: false });
     page.circle?.figure.element.classList.add('stale');
   };
 
@@ -37,10 +37,10 @@ export function beginToFollow(page) {
     ]);
     if (page.judged !== judged) return;
     const gains = gainFact({ ...answer, verdict: judged.answer.verdict });
-    verdict.tell([gains]);
+    verdict.tell({ facts: [gains] });
     if (judged.answer.verdict.code === 'unstable') return;
     const { budget } = await get(`v1/stability?${judged.scene}&budget=true&bounces=${BUDGETED}`, signal);
-    if (page.judged === judged && budget) verdict.tell([gains, firstLoss(budget)]);
+    if (page.judged === judged && budget) verdict.tell({ facts: [gains, firstLoss(budget)] });
   };
 
   // Without them the verdict stands alone.
@@ -72,7 +72,8 @@ export function beginToFollow(page) {
       const judged = { answer, scene };
       page.judged = judged;
       page.circle?.show(judged);
-      verdict.show(judged, (more) => get(`v1/stability?${scene}&${more}`), newest());
+      // Facts of another answer are void.
+      verdict.tell({ shown: judged, held: null, facts: [], busy: !newest() });
       if (newest()) tellMore();
       byId('build').textContent = server.build;
     } catch (error) {
@@ -103,7 +104,7 @@ export function beginToFollow(page) {
   const settle = debounce(QUIET_MS, hurry);
 
   page.follow = (another) => {
-    verdict.busy(true);
+    verdict.tell({ busy: true });
     facts.cancel();
     verdicts.want(null);
     previews.want(null);

@@ -100,8 +100,10 @@ async function showThisRun(page) {
   if (run.phase === 'ended') tell(fact + after);
   // A body that the table has caught rests there, whatever its setting does.
   const caught = Object.keys(run.interventions.at(-1)?.guide ?? {}).some((name) => name.startsWith('catch.'));
-  if (run.active && run.holds && caught) page.verdict?.ended('kept', 'Caught: held on the table');
-  else page.verdict?.ended(run.phase === 'ended' ? run.fate : null, fact);
+  const isHeld = run.active && run.holds !== null && caught;
+  const isTold = run.phase === 'ended' && (run.fate === 'fell' || run.fate === 'kept');
+  const held = isHeld ? { tone: 'kept', words: 'Caught: held on the table' } : null;
+  page.verdict?.tell({ ended: isTold ? { tone: run.fate, words: fact } : held });
 }
 
 /** The run is refused for good. @param {Page} page @param {Problem} problem */

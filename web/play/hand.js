@@ -35,7 +35,7 @@ export function bringHand(page) {
     holds = wanted;
     button.setAttribute('aria-pressed', String(wanted));
     view.tilt = wanted ? 0 : null;
-    page.verdict?.plays(wanted ? 'You hold the table' : null);
+    page.verdict?.tell({ played: wanted ? 'You hold the table' : null });
     // The hint to drag the rod, which a hand at the table cannot.
     for (const hint of document.querySelectorAll('.intro .how')) hint.toggleAttribute('hidden', wanted);
   };
@@ -132,7 +132,7 @@ export function bringHand(page) {
     },
     cleared: leave,
     struck: () => {
-      if (holds) page.verdict?.plays(`Held ${run.impacts.last?.n ?? 0}`);
+      if (holds) page.verdict?.tell({ played: `Held ${run.impacts.last?.n ?? 0}` });
     },
   });
   return {

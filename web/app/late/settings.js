@@ -85,7 +85,6 @@ export function bringSettings(page) {
   offerAngles(byId('units'));
   addEventListener('popstate', () => followAddress(location.search));
   document.addEventListener(UNITS, () => {
-    page.verdict?.retell();
     page.panels?.draw();
     page.view.redraw();
     page.updateAddress();

@@ -2,30 +2,32 @@
 // below the reasons. Where there is no verdict, the line has the reason.
 
 import { marginOf } from '../../api/answers.js';
-import { Problem } from '../../api/client.js';
+import { Problem, get } from '../../api/client.js';
 import { number, quantity } from '../../dom/numbers.js';
 import { capitalized } from '../../dom/typeset.js';
-import { angles } from '../../dom/units.js';
+import { UNITS, angles } from '../../dom/units.js';
 import { html, render, useState } from '../../vendor/preact/preact.js';
 import { Headline, Numbers, Spoken, brief, sign } from '../parts.js';
 import { endedAs, plainly, toneOf } from './words.js';
 
 /**
  * @typedef {object} State
- * @property {(Judged & {measure: Measure}) | null} shown the verdict on the page, with the way to ask for more
+ * @property {Judged | null} shown the verdict on the page
+ * @property {boolean} busy the answer to a newer question is awaited
  * @property {Result} ended the headline of a run that has ended, which goes before that of the setting
- * @property {Result} played the headline while somebody plays
+ * @property {string | null} played the headline while somebody plays
  * @property {{words: string, label: string, act: () => void} | null} held the reason for no verdict, and the way to mend it
- * @property {(string | null)[]} facts
+ * @property {(string | null)[]} facts beside the verdict; they come later
  */
 
 /** @param {State} state */
 function VerdictLine({ shown, held, played, ended, facts }) {
   const setting = shown && headlineOf(shown.answer);
-  const line = held ? { tone: 'none', words: 'No verdict' } : (played ?? ended ?? setting);
+  const playing = played === null ? null : { tone: 'played', words: played };
+  const line = held ? { tone: 'none', words: 'No verdict' } : (playing ?? ended ?? setting);
   // A run that fell by what was done to it is told from its setting.
-  const aside = played !== null || (ended?.tone === 'fell' && setting?.tone !== 'unstable');
-  const alone = !held && !played && aside && setting?.tone === 'stable';
+  const aside = playing !== null || (ended?.tone === 'fell' && setting?.tone !== 'unstable');
+  const alone = !held && !playing && aside && setting?.tone === 'stable';
   return html`${line && html`<${Headline} result=${line} />`}
     <span class="facts" hidden=${!held && aside}>
       ${
@@ -43,54 +45,27 @@ function VerdictLine({ shown, held, played, ended, facts }) {
 /** @param {HTMLElement} root of the line @param {HTMLElement} more place of the evidence */
 export function bringVerdict(root, more) {
   /** @type {State} */
-  const state = { shown: null, ended: null, played: null, held: null, facts: [] };
-
-  /** @param {Partial<State>} changes */
-  const change = (changes) => {
-    Object.assign(state, changes);
-    more.hidden = state.held !== null;
+  let state = { shown: null, busy: false, ended: null, played: null, held: null, facts: [] };
+  const draw = () => {
+    root.setAttribute('aria-busy', String(state.busy));
     render(html`<${VerdictLine} ...${state} />`, root);
-  };
-
-  /** Shows the last answer anew, for another unit of angles. */
-  const retell = () => {
+    // The evidence of the last verdict is out of sight until there is another.
+    more.hidden = state.held !== null;
     if (state.shown) render(html`<${Answer} ...${state.shown} />`, more);
   };
-
-  /** Marks the verdict as out of date. @param {boolean} busy */
-  const busy = (busy) => root.setAttribute('aria-busy', String(busy));
-
   root.replaceChildren();
-  change({});
+  draw();
+  document.addEventListener(UNITS, draw);
   return {
-    retell,
-    busy,
-    /** Facts that belong to the answer shown; they come later. @param {(string | null)[]} facts */
-    tell: (facts) => change({ facts }),
-    /** The end of the run on the screen; null while it goes on. @param {'fell' | 'kept' | 'over' | null} fate @param {string} words */
-    ended: (fate, words) => {
-      const ended = fate === 'fell' || fate === 'kept' ? { tone: fate, words } : null;
-      // It is called at each bounce.
-      if (ended || state.ended) change({ ended });
-    },
-    /** Words on a play with the run, in place of the verdict; null ends it. @param {string | null} words */
-    plays: (words) => change({ played: words === null ? null : { tone: 'played', words } }),
-    /** Tells why there is no verdict. The evidence of the last one is out of sight until there is another. @param {string} words @param {string} label of the way to mend it @param {() => void} act */
-    hold: (words, label, act) => {
-      busy(false);
-      change({ held: { words, label, act } });
-    },
-    /** @param {Judged} judged @param {Measure} measure @param {boolean} newest false while the answer to a newer question is awaited */
-    show: (judged, measure, newest) => {
-      // Facts of another answer are void.
-      change({ facts: [], held: null, shown: { ...judged, measure } });
-      retell();
-      if (newest) busy(false);
+    /** @param {Partial<State>} changes */
+    tell: (changes) => {
+      const before = state;
+      state = { ...before, ...changes };
+      // It is called at each bounce, and at each turn of a knob.
+      if (/** @type {(keyof State)[]} */ (Object.keys(changes)).some((name) => state[name] !== before[name])) draw();
     },
   };
 }
-
-/** @typedef {(query: string) => Promise<Stability>} Measure asks for the verdict with more, which is dearer */
 
 const HEADLINES = { unstable: 'Falls', beyond: 'On the edge', stable: 'Stays up' };
 
@@ -115,8 +90,8 @@ function headlineOf(answer) {
 /** A sentence of the server. @param {{text: string, class: string}} props */
 const Said = ({ text, class: kind }) => html`<p class=${kind}>${brief(capitalized(plainly(text)))}</p>`;
 
-/** @param {Judged & {measure: Measure}} props */
-function Answer({ answer, scene, measure }) {
+/** @param {Judged} props */
+function Answer({ answer, scene }) {
   const { verdict, agree, model, notes, nonlinear } = answer;
   const headline = headlineOf(answer);
   const load = nonlinear?.demand;
@@ -137,7 +112,7 @@ function Answer({ answer, scene, measure }) {
       <summary>Numbers of the verdict</summary>
       <${Numbers} rows=${numbersOf(answer)} />
     </details>
-    <${Evidence} answer=${answer} scene=${String(scene)} measure=${measure} />
+    <${Evidence} answer=${answer} scene=${String(scene)} />
     <p class="model">
       <a class="budget" href=${`rig?${scene}#budget`}>What may go wrong: the errors of a rig that end it</a>
     </p>
@@ -207,14 +182,14 @@ function gist({ rotation_number: rotation, chaos, predictable_bounces: predictab
   return capitalized(parts.filter(Boolean).join(' · ')) || 'Beyond the linear map';
 }
 
-/** How far the body may be released aside, once somebody asks. @param {{measure: Measure}} props */
-function Basin({ measure }) {
+/** How far the body may be released aside, once somebody asks. @param {{scene: string}} props */
+function Basin({ scene }) {
   const [measured, take] = useState(/** @type {Stability | null} */ (null));
   const [told, tell] = useState({ words: 'How far aside may it be released?', busy: false });
   const ask = async () => {
     tell({ words: 'Trying some 400 release angles…', busy: true });
     try {
-      take(await measure('basin=true'));
+      take(await get(`v1/stability?${scene}&basin=true`));
     } catch (error) {
       tell({ words: error instanceof Problem ? error.message : 'The server did not answer.', busy: false });
     }
@@ -223,8 +198,8 @@ function Basin({ measure }) {
   return html`${told.words} ${!told.busy && html`<button type="button" id="basin" onClick=${ask}>Measure it</button>`}`;
 }
 
-/** @param {{answer: Stability, scene: string, measure: Measure}} props */
-function Evidence({ answer, scene, measure }) {
+/** @param {{answer: Stability, scene: string}} props */
+function Evidence({ answer, scene }) {
   // A point has no angle that could turn or be released aside.
   if ('point' in answer.scene.body || !answer.fixed_point) return null;
   return html`<details class="evidence">
@@ -232,7 +207,7 @@ function Evidence({ answer, scene, measure }) {
     <dl aria-label="Beyond the linear map">
       ${sentences(answer).map(([name, words]) => html`<dt>${name}</dt><dd>${words}</dd>`)}
       <dt>Basin</dt>
-      <dd><span role="status"><${Basin} key=${scene} measure=${measure} /></span></dd>
+      <dd><span role="status"><${Basin} key=${scene} scene=${scene} /></span></dd>
     </dl>
   </details>`;
 }
