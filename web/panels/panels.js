@@ -4,7 +4,6 @@
 import { dropWith } from '../app/late/settings.js';
 import { launch, play } from '../app/scenes.js';
 import { byId } from '../dom/elements.js';
-import { brokenLinkNotice } from '../dom/notices.js';
 import { html, render } from '../vendor/preact/preact.js';
 import { card, entriesOf } from './card.js';
 import { Parts } from './settings.js';
@@ -95,7 +94,6 @@ export function bringPanels(page) {
   /** Opens a tab, or that of a panel. @param {string} id */
   const show = (id) => choose(PANELS.find((entry) => entry.id === id)?.tab ?? id, true);
 
-  parts.dropped = (id, what) => brokenLinkNotice(`link-${id}`, what);
   parts.changed = () => {
     draw();
     page.updateAddressSoon();

@@ -54,11 +54,6 @@ export class ScenePage extends Parts {
     this.tell();
   }
 
-  /** @param {string} id @param {string[]} words */
-  dropped(id, words) {
-    brokenLinkNotice(`link-${id}`, words);
-  }
-
   tell() {
     this.dispatchEvent(new Event('change'));
   }

@@ -1,5 +1,6 @@
 // Settings of a panel: their parts of the address, the fields in which they are typed, and the request that they make.
 
+import { brokenLinkNotice } from '../dom/notices.js';
 import { number } from '../dom/numbers.js';
 import { inWords } from '../dom/typeset.js';
 import { html, useEffect } from '../vendor/preact/preact.js';
@@ -52,8 +53,10 @@ export class Parts extends EventTarget {
   /** Hears of other parts. */
   changed() {}
 
-  /** Hears of broken parts, in words. @param {string} _id of the panel @param {string[]} _words */
-  dropped(_id, _words) {}
+  /** Tells of broken parts, if there are any. @param {string} id of the panel @param {string[]} words */
+  dropped(id, words) {
+    brokenLinkNotice(`link-${id}`, words);
+  }
 
   /** @type {PanelPage['part']} */
   part = (changes) => {

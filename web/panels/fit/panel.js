@@ -31,35 +31,29 @@ const MOST_IMPACTS = 1000;
 const FLASH_MS = 300;
 const NO_DATA = 'There are no measured bounces yet: choose a file, or make an example.';
 
-/** @param {Measured} impact @param {Column} column */
-const isMeasured = (impact, column) => Number.isFinite(impact[column]);
-
 /** The number of values of each column that has any. @param {Measured[]} impacts */
 const countsOf = (impacts) =>
   new Map(
     COLUMNS.map(
-      (column) => /** @type {const} */ ([column, impacts.filter((one) => isMeasured(one, column)).length]),
+      (column) => /** @type {const} */ ([column, impacts.filter((one) => Number.isFinite(one[column])).length]),
     ).filter(([, count]) => count > 0),
   );
 
 /** @param {PanelPage} page @param {Measured[]} impacts @param {boolean} numbered @param {ReturnType<typeof readFit>} settings @returns {Request} */
 function requestOf(page, impacts, numbered, { unknown, given }) {
-  const columns = [...countsOf(impacts).keys()];
-  const of = (/** @type {(column: Column) => unknown} */ values, /** @type {Column[]} */ some) =>
-    Object.fromEntries(some.map((column) => [column, values(column)]));
-  const measured = /** @type {Request['measured']} */ (
-    of((column) => impacts.map((one) => (isMeasured(one, column) ? one[column] : null)), columns)
-  );
+  const counts = countsOf(impacts);
+  /** @type {(keyof Measured)[]} */
+  const columns = [...counts.keys(), ...(numbered ? /** @type {const} */ (['n']) : [])];
   const scene = structuredClone(page.scene);
   for (const { field, value } of unknown) setAt(scene, field.field, value);
   return {
     scene,
-    measured: { ...measured, ...(numbered && { n: impacts.map(({ n }) => n) }) },
-    unknown: unknown.map(({ field }) => field.field),
-    sd: of(
-      (column) => given[column],
-      columns.filter((column) => column in given),
+    // JSON has `null` for what is not a number.
+    measured: /** @type {any} */ (
+      Object.fromEntries(columns.map((column) => [column, impacts.map((one) => one[column])]))
     ),
+    unknown: unknown.map(({ field }) => field.field),
+    sd: Object.fromEntries(Object.entries(given).filter(([column]) => counts.has(/** @type {Column} */ (column)))),
   };
 }
 

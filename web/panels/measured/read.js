@@ -40,7 +40,6 @@ export const shownOf = (quantity, value) => value * shownFactor(QUANTITIES[quant
  */
 
 /** A column of a file and what it is taken for. @typedef {{head: string, quantity: Quantity | null, unit: string}} Head */
-/** Columns by their place, as the reader picked them; `null` leaves a column out. @typedef {Map<number, {quantity: Quantity | null, unit: string}>} Picks */
 /** A column that is read, with what makes SI of its numbers. @typedef {{quantity: Quantity, place: number, factor: number, head: string}} Reader */
 /** The columns of a file with its impacts, or the reason why there are none. @typedef {{heads: Head[], reading: Reading | null, refusal: string}} Content */
 
@@ -117,8 +116,8 @@ function recordsOf(text) {
   return records;
 }
 
-/** @param {string} text @param {Picks} [picks] what the reader says about columns @returns {Content} */
-function read(text, picks = new Map()) {
+/** @param {string} text @param {Head[]} [picked] the columns as the reader takes them @returns {Content} */
+function read(text, picked) {
   const records = recordsOf(text.replace(/^\ufeff/, '').replace(/\r\n?/g, '\n'));
   const isRemark = (/** @type {string[]} */ [first]) => first.startsWith('#');
   const headsOf = (/** @type {string[]} */ cells) =>
@@ -127,7 +126,7 @@ function read(text, picks = new Map()) {
   const at = records.findIndex(({ cells }) => !isRemark(cells) || columnsOf(headsOf(cells), []).length > 0);
   if (at < 0) return { heads: [], reading: null, refusal: 'The file is empty.' };
   const { cells } = records[at];
-  const heads = headsOf(cells).map((head, place) => ({ ...head, ...picks.get(place) }));
+  const heads = picked ?? headsOf(cells);
   const remarks = /** @type {string[]} */ ([]);
   const columns = columnsOf(heads, remarks);
   const rows = records.slice(at + 1).filter((one) => !isRemark(one.cells));
@@ -231,8 +230,8 @@ class MeasuredFile extends EventTarget {
     this.#show(text === null ? { heads: [], reading: null, refusal } : read(text));
   }
 
-  /** Reads the file again. @param {Picks} picks what its columns are */
-  pick = (picks) => this.#show(read(this.#text, picks));
+  /** Reads the file again. @param {Head[]} heads its columns as they are to be taken */
+  pick = (heads) => this.#show(read(this.#text, heads));
 
   /** @param {Content} content */
   #show(content) {
@@ -277,8 +276,7 @@ export function Columns({ file: { content, pick } }) {
   const row = (/** @type {Head} */ one, /** @type {number} */ place) => {
     const label = one.head || `column ${place + 1}`;
     const units = unitsOf(one);
-    const take = (/** @type {Partial<Head>} */ part) =>
-      pick(new Map(heads.map((head, at) => [at, at === place ? { ...head, ...part } : head])));
+    const take = (/** @type {Partial<Head>} */ part) => pick(heads.with(place, { ...one, ...part }));
     // A column that is taken for something else begins in the unit of its head, if it may have that, or of SI.
     const is = (/** @type {string} */ name) => {
       const quantity = /** @type {Quantity | ''} */ (name) || null;
