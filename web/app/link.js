@@ -9,7 +9,7 @@ import { FASTEST, SLOWEST, VELOCITIES, interventionQuery, interventionsOf } from
 const RUN_KEYS = /^(interventions\.\d+\.(impact|(set|kick|catch|throw)\.[\w.]+)|clock\.\d+\.(wall_ms|run|speed)|hold)$/;
 /** Keys of panels. */
 const PANEL_KEYS =
-  /^(tab|you|map\.([xy]\.(parameter|from|to)|quantity|impacts|columns)|survival\.(runs|impacts|timing_sd|model)|precision\.(impacts|axis)|ladder\.(impacts|tolerance)|(map\.)?catch\.(strategy|ratio|strikes|brake|hold|height|theta|low|high)|calls\.language|design\.(contact|weights\.((x|theta)(_dot)?|input))|fit\.[\w.]+|brush\.\w+\.(from|to)|pin\.[0-2]\.(preset|(scene|interventions)\.[\w.]+))$/;
+  /^(tab|you|have\.[a-z_.]+|map\.([xy]\.(parameter|from|to)|quantity|impacts|columns)|survival\.(runs|impacts|timing_sd|model)|precision\.(impacts|axis)|ladder\.(impacts|tolerance)|(map\.)?catch\.(strategy|ratio|strikes|brake|hold|height|theta|low|high)|calls\.language|design\.(contact|weights\.((x|theta)(_dot)?|input))|fit\.[\w.]+|brush\.\w+\.(from|to)|pin\.[0-2]\.(preset|(scene|interventions)\.[\w.]+))$/;
 
 /**
  * @typedef {object} Link

@@ -2,52 +2,45 @@
 
 import { setAt } from '../api/scene-fields.js';
 import { merged, parameters } from '../api/scene-query.js';
-import { brokenLinkNotice } from '../dom/notices.js';
 import { sceneOf } from '../app/link.js';
+import { entriesOf } from '../panels/card.js';
 import { ScenePage } from '../panels/scene-page.js';
+import { numberOf } from '../panels/settings.js';
 
-/** Sizes that the owner has, by field: `have.table.errors.angle_bias=0.001`. */
-const HAVE = /^have\.([a-z_.]+)$/;
+/** The beginning of the parts of the address with sizes that the owner has: `have.table.errors.angle_bias=0.001`. */
+const HAVE = 'have.';
 
 /** Parts of a file that are no values of its scene. */
 const BESIDE = ['preset', 'derived', '$schema'];
 
 export class Rig extends ScenePage {
-  /** Sizes of errors that the owner has typed, in SI units. @type {Record<string, number>} */
-  have = {};
-
   /** @param {Field[]} fields @param {Case[]} cases */
   constructor(fields, cases) {
-    super('rig', fields, cases);
+    super('rig', fields, cases, [...entriesOf('rig').map(({ id }) => id), 'have']);
+  }
+
+  /** Sizes of errors that the owner has typed, in SI units, by field. @returns {Record<string, number>} */
+  get have() {
+    const own = [...this.link].filter(([key]) => key.startsWith(HAVE));
+    return Object.fromEntries(own.map(([key, text]) => [key.slice(HAVE.length), numberOf(text)]));
   }
 
   /** @param {string} search */
   read(search) {
-    const query = new URLSearchParams(search);
-    /** @type {string[]} */
-    const dropped = [];
-    this.have = {};
-    for (const [key, text] of [...query]) {
-      const [, path] = HAVE.exec(key) ?? [];
-      if (!path) continue;
-      query.delete(key);
-      const value = text.trim() === '' ? NaN : Number(text);
-      if (value >= 0 && Number.isFinite(value)) this.have[path] = value;
-      else dropped.push(`what you have of ${path} “${text.slice(0, 40)}”, which is not a number from 0 on`);
-    }
-    brokenLinkNotice('link-have', dropped);
-    super.read(`?${query}`);
+    super.read(search);
+    const wrong = Object.entries(this.have).filter(([, size]) => !(size >= 0 && Number.isFinite(size)));
+    const words = (/** @type {string} */ path) =>
+      `what you have of ${path} “${this.link.get(HAVE + path)?.slice(0, 40)}”, which is not a number from 0 on`;
+    if (wrong.length > 0)
+      this.drop(
+        'have',
+        wrong.map(([path]) => [HAVE + path, words(path)]),
+      );
   }
 
   /** The scene as text, the last that was whole. */
   get words() {
     return String(this.queryOf());
-  }
-
-  get search() {
-    const query = new URLSearchParams(super.search);
-    for (const [path, value] of Object.entries(this.have)) query.set(`have.${path}`, String(value));
-    return `?${query}`;
   }
 
   /** Takes the values of the form. @param {Scene} scene @param {boolean} complete */
@@ -64,12 +57,10 @@ export class Rig extends ScenePage {
     return merged(this.scene, changes);
   }
 
-  /** @param {string} path @param {number | undefined} size */
+  /** The way back leads to what the owner had before. @param {string} path @param {number | undefined} size */
   own(path, size) {
-    const { [path]: _, ...others } = this.have;
-    this.have = size === undefined ? others : { ...others, [path]: size };
-    this.keep(true);
-    this.tell();
+    history.pushState(null, '');
+    this.part({ [HAVE + path]: size === undefined ? null : String(size) });
   }
 
   /**
