@@ -213,7 +213,7 @@ export function TaskButtons({ name, task, start, about, quiet = false }) {
   const place = useRef(/** @type {HTMLElement | null} */ (null));
   useKeptFocus(place);
   const { active } = task;
-  return html`<p class="buttons" ref=${place}>
+  return html`<p class="buttons row" ref=${place}>
     <button type="submit" id=${`${name}-start`} class="primary" disabled=${active} hidden=${quiet && ['', 'answered'].includes(task.ended)}
       aria-describedby=${about}>${start}</button>
     <button type="button" id=${`${name}-cancel`} disabled=${!active} hidden=${quiet && !active} onClick=${() => task.stop('Cancelled.')}>Cancel</button>

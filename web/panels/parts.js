@@ -110,7 +110,7 @@ export function Scale({ low, high, bars = [], marks, label, kind = '' }) {
 }
 
 /** Fields with a button that asks. @param {{ask: () => void, kind?: string, children: Child}} props */
-export const Form = ({ ask, kind = 'study-form', children }) => {
+export const Form = ({ ask, kind = 'study-form row', children }) => {
   const submit = (/** @type {Event} */ event) => {
     event.preventDefault();
     ask();

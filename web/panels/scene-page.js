@@ -123,7 +123,7 @@ export function Cases({ page, id, label, own }) {
     if (one) page.take(structuredClone(one.scene), one);
   };
   const choices = Object.fromEntries(cases.map(({ name, title }) => [name, plain(title)]));
-  return html`<p class="chosen">
+  return html`<p class="chosen row">
     <label for=${id}>${label} </label>
     <${Choice} id=${id} value=${chosen?.name ?? ''} choices=${chosen ? choices : { '': own, ...choices }} changed=${choose} />
   </p>`;

@@ -130,7 +130,7 @@ export function controlsOf(page, id, settings, values, errors = []) {
       changed=${(/** @type {number | undefined} */ typed) => changed(scaled(typed, 1 / scale))} />`;
   };
   const field = (/** @type {string} */ name, /** @type {string} */ hint = '') =>
-    html`<p class="study-row" key=${name}><label for=${idOf(name)}>${settings[name].label}</label>${control(name, { hint })}</p>`;
+    html`<p class="study-row row" key=${name}><label for=${idOf(name)}>${settings[name].label}</label>${control(name, { hint })}</p>`;
   return { control, field };
 }
 

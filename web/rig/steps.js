@@ -56,7 +56,7 @@ function Step({ n, id, title, result, open: begins = false, children }) {
         <h2 id=${`${id}-title`}><span class="n">${n}</span> ${title}</h2>
         ${result && html`<span class="result"><${Told} result=${result} /></span>`}
       </summary>
-      <div class="step-body">${seen.current && (typeof children === 'function' ? children(open) : children)}</div>
+      <div class="step-body stack">${seen.current && (typeof children === 'function' ? children(open) : children)}</div>
     </details>
     <a class="to-step" href=${`#${id}`} aria-label=${`Link to step ${n}: ${title}`}>#</a>
   </section>`;
@@ -127,7 +127,7 @@ function Values({ rig, verdict }) {
   }, [problem]);
   return html`<${Step} n=${1} id="values" title="Your values" open result=${{ tone: 'none', words: summary(rig) }}>
     <${Cases} page=${rig} id="case" label="Begin with" own="values of your own" />
-    <div class="values">
+    <div class="values stack">
       <form class="rig-first" ref=${first} novalidate aria-label="Values that a lab knows first" />
       <${Drawing} scene=${rig.scene} derived=${verdict.answer?.derived ?? rig.chosen?.derived ?? null} />
     </div>
@@ -212,12 +212,12 @@ function Range({ answer, gain: [field, symbol, name] }) {
     ? html`<span class="range-words muted">Small swings would hold for ${letter} ${rangeWords(shown)}</span>`
     : html`<span class="range-words">${letter}${` may be ${rangeWords(shown)}`}<span class="muted">${release ? ' for this release' : ' for small swings'}${release && small && ` · ${rangeWords(small)} for small swings`}</span></span>`;
   const ends = [small, release].flatMap((one) => (one ? [one.low, one.high] : [])).filter((end) => end !== null);
-  if (shown.low === null || shown.high === null) return html`<p class="range">${words}</p>`;
+  if (shown.low === null || shown.high === null) return html`<p class="range row">${words}</p>`;
   const [least, most] = [Math.min(...ends, value), Math.max(...ends, value)];
   const room = (most - least) * BEYOND || 1;
   const bar = (/** @type {Ends | null | undefined} */ one, /** @type {string} */ kind) =>
     one?.low != null && one.high != null ? [[one.low, one.high, kind]] : [];
-  return html`<div class=${`range ${falls ? 'falls' : ''}`}>
+  return html`<div class=${`range row ${falls ? 'falls' : ''}`}>
     ${words}
     <${Scale} low=${least - room} high=${most + room} bars=${[...bar(small, 'small'), ...bar(shown, 'release')]} marks=${[[value, '']]}
       label=${`${name} ${number(value)}: it may be ${rangeWords(shown)}`} />

@@ -58,7 +58,7 @@ export function Branch({ page: { query } }) {
   const judged = verdict.current ? verdict.answer : null;
   const against = judged && reasonAgainst(judged);
   const asked = useAnswer(judged && !against ? branchOf(query, judged) : null, { quiet_ms: 0, ask: pictured });
-  return html`<div class="study branch" ref=${place}>
+  return html`<div class="study stack branch" ref=${place}>
     ${
       against
         ? html`<p class="muted" role="status">${against}</p>`

@@ -64,7 +64,7 @@ export function Calls({ page }) {
     html`<label class="choice"><input type="radio" name="calls-language" value=${name} checked=${name === values.language}
       onChange=${() => page.part({ 'calls.language': name === 'curl' ? null : name })} /> ${title}</label>`;
   return html`<div class="calls">
-    <fieldset class="choices"><legend class="unseen">Language</legend>${Object.entries(choices).map(choice)}</fieldset>
+    <fieldset class="choices row"><legend class="unseen">Language</legend>${Object.entries(choices).map(choice)}</fieldset>
     ${query && Object.entries(calls).map(([title, path]) => html`<${Code} key=${title} title=${title} code=${call(path)} copier=${`Copy ${short}`} open=${path} />`)}
   </div>`;
 }

@@ -72,9 +72,9 @@ export function CatchBody({ page }) {
     const own = Object.entries(used).map(([name, value]) => [`map.catch.${name}`, String(value)]);
     page.open?.('map', new URLSearchParams([...Object.entries(REACH), ...own]));
   };
-  return html`<div class="study" ref=${root}>
+  return html`<div class="study stack" ref=${root}>
     <${Form} kind="" ask=${catchIt}>
-      <div class="study-act">
+      <div class="row">
         <button type="submit" id="catch-start" class="primary">Catch</button>
         <div class="study-told" id="catch-told" role="status">
           ${fresh ? html`<${Told} ...${shown} />` : html`<p>${words(told)}</p>`}
@@ -82,11 +82,11 @@ export function CatchBody({ page }) {
       </div>
       <${CatchFields} values=${values} field=${field} />
     <//>
-    <div class=${`study-sheet ${fresh ? '' : 'stale'}`} id="catch-sheet" hidden=${!shown}>
+    <div class=${`study-sheet stack ${fresh ? '' : 'stale'}`} id="catch-sheet" hidden=${!shown}>
       ${shown && html`<${Sheet} ...${shown} />`}
     </div>
     ${play && html`<${UnderWay} play=${play} values=${values} field=${field} refused=${refused} refuse=${refuse} />`}
-    <p class="study-row">
+    <p class="study-row row">
       <button type="button" id="catch-reach" onClick=${reach}>Map its reach</button>
       <span>Which releases the table catches, over angle and spin: a catch in every cell.</span>
     </p>
@@ -131,15 +131,15 @@ function UnderWay({ play, values, field, refused, refuse }) {
   const said = held ? 'The table holds the body. A throw goes on from there.' : 'Acts from the next strike on.';
   return html`<fieldset class="catch-live">
     <legend>The run under way</legend>
-    <p class="study-row">
+    <p class="study-row row">
       <button type="button" id="catch-run" disabled=${!live || held} onClick=${catchRun}>Catch this run</button>
       <span id="catch-live-told" role="status">${live || held ? said : 'No run is under way.'}</span>
     </p>
-    <div class="study-row">
+    <div class="study-row row">
       <button type="button" id="catch-throw" disabled=${!live} onClick=${throwRun}>Throw</button>
       ${thrown('height')} ${thrown('theta')}
     </div>
-    <div class="study-row">
+    <div class="study-row row">
       <button type="button" id="catch-juggle" disabled=${!live} onClick=${juggleRun}>Juggle</button>
       ${thrown('low')} ${thrown('high')}
     </div>
@@ -224,7 +224,7 @@ export function Sheet({ answer, figure, path }) {
   return html`<${Picture} name="catch" figure=${figure} read=${reader(answer)}
       label=${`Angle, height and place of the body, and tilt, height and speed of the table over time. ${headline(answer.outcome).join(': ')}.`}
       hint="With keys: left and right go through strikes and hold, page up and page down by a tenth." />
-    <div class="catch-numbers">
+    <div class="stack">
       <${Numbers} id="catch-facts" rows=${facts(answer)} />
       <${Loads} label="What it asks of the table" kind="demands" values=${demand} limits=${scene.table?.limits ?? {}} />
       <${Candidates} all=${candidates} />

@@ -47,7 +47,7 @@ export const inUse = (values, at = '') =>
   );
 
 /** @param {{values: Record<string, any>, field: (name: string, hint?: string) => unknown, at?: string}} props */
-export const CatchFields = ({ values, field, at = '' }) => html`<fieldset class="study-settings">
+export const CatchFields = ({ values, field, at = '' }) => html`<fieldset class="study-settings row">
   <legend>How</legend>
   ${namesOf(values, at).map((name) => field(name, HINTS[values[`${at}strategy`]][name.slice(at.length)]))}
 </fieldset>`;

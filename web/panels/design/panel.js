@@ -49,9 +49,9 @@ export function Design({ page, open = true }) {
   const { values, field } = useSettings(page, 'design', SETTINGS);
   const path = requestOf('v1/controllers', page.query, values);
   const asked = useAnswer(open ? path : null, { ask: pictured });
-  return html`<div class="study">
+  return html`<div class="study stack">
     ${!asked.answer && html`<p>A tilt in proportion to the angle leaves the rod circling and drifting. A law that feeds back the whole state brings it to rest in place.</p>`}
-    <fieldset class="study-settings">
+    <fieldset class="study-settings row">
       <legend>Weights of squared deviations (<${Term} name="lqr" words="LQR" />)</legend>
       ${Object.keys(SETTINGS).map((name) => field(name))}
     </fieldset>
@@ -91,8 +91,8 @@ function Law({ found: [answer, figure], path, use }) {
   const region = (/** @type {string} */ name, /** @type {string | null | undefined} */ address) =>
     address && html`<a href=${`${here(address)}&format=svg`}>${name}</a>`;
   const [closed, open] = [eigenvalues, free];
-  return html`<div class="study-sheet">
-    <p class="study-act">
+  return html`<div class="study-sheet stack">
+    <p class="row">
       ${use && html`<button type="button" id="design-run" class="primary" onClick=${() => use(answer.scene)}>Use this law</button>`}
       <span role="status">${answer.stable ? `Every small deviation that is fed back dies out${sinks ? ', but nothing holds the height' : ''}.` : 'This law does not hold: a small deviation grows.'}</span>
     </p>

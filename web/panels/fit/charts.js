@@ -321,7 +321,7 @@ export function Overlay({ page, reading, fit }) {
       found !== null &&
       found.match.pairs.length > 0 &&
       html`<${Apart} found=${found} reading=${reading}>
-        <p class="matching">
+        <p class="row">
           <label for="measured-by">Match </label>
           <${Choice} id="measured-by" value=${byTime ? 'time' : 'number'} disabled=${!isTimed} choices=${{ time: 'by time', number: 'by number' }} changed=${matchBy} />
           <label for="measured-first">The first measured bounce is n = </label>

@@ -130,7 +130,7 @@ export function UnknownFields({ page: { scene, part }, settings: { items, unknow
     const name = `first.${path}`;
     const value = playedAt(scene, field);
     const chosen = isChosen(field);
-    return html`<li class="fit-field" key=${path}>
+    return html`<li class="fit-field row" key=${path}>
       <label class="check" for=${id} title=${about}>
         <input type="checkbox" id=${id} checked=${chosen} disabled=${full && !chosen}
           onChange=${(/** @type {Event} */ { currentTarget }) => choose(field, /** @type {HTMLInputElement} */ (currentTarget).checked)} />
@@ -156,7 +156,7 @@ export function UnknownFields({ page: { scene, part }, settings: { items, unknow
   return html`<fieldset class="fit-unknown">
     <legend>Unknown fields, with the values at which the search begins</legend>
     <ul class="fit-fields">${items.filter((field) => isChosen(field) || found.includes(field)).map(item)}</ul>
-    <div class="fit-search">
+    <div class="fit-search row">
       <input type="search" id="fit-search" placeholder="Find another field" aria-label="Find another field" autocomplete="off" spellcheck="false"
         value=${searched} onKeyDown=${key} onInput=${(/** @type {Event} */ { currentTarget }) => search(/** @type {HTMLInputElement} */ (currentTarget).value)} />
       <p class="muted small found" role="status">${words.length === 0 ? `${number(items.length, 4)} fields can be unknown.` : found.length === 0 ? 'No field has these words.' : count}</p>
@@ -172,7 +172,7 @@ export const Deviations = ({ counts, settings: { given, settings, control }, fau
     <legend>Standard deviations of the data</legend>
     <ul class="fit-fields">
       ${COLUMNS.filter((column) => counts.has(column) || column in given).map(
-        (column) => html`<li class="fit-field" key=${column}>
+        (column) => html`<li class="fit-field row" key=${column}>
           <label for=${`fit-sd-${column}`}>${settings[`sd.${column}`].label}</label>
           <span class="fit-value">${control(`sd.${column}`, { hint: 'estimated', blame: faults[column] })}</span>
           <span class="muted">${number(counts.get(column) ?? 0, 7)} values</span>

@@ -163,7 +163,7 @@ export function Fit({ page, told }) {
   const { points, begun_ms } = curve.current;
   const live = task.active && points.length > 0 && performance.now() - begun_ms > FLASH_MS;
   const sheet = useMemo(() => shown && html`<${Sheet} ...${shown} />`, [shown, angles()]);
-  return html`<div class="study fit" ref=${root}>
+  return html`<div class="study stack fit" ref=${root}>
     <${Data} file=${file} fault=${faults.data} note=${faults.note} makeExample=${makeExample} />
     ${reading && html`<${Overlay} key=${file.files} page=${page} reading=${reading} fit=${shown && state?.inUse ? shown.fit : null} />`}
     <${Form} ask=${ask}>
@@ -171,19 +171,19 @@ export function Fit({ page, told }) {
         <${UnknownFields} page=${page} settings=${settings} faults=${faults} />
         <${Deviations} counts=${countsOf(impacts)} settings=${settings} faults=${faults} />
       </div>
-      <div class="study-act">
+      <div class="row">
         <${TaskButtons} name="fit" task=${task} start="Fit" about="fit-promise" />
         <p class="muted fit-promise" id="fit-promise">Sends ${reading ? `these ${number(impacts.length, 7)}` : 'the'} bounces and the scene to the server of this page. Until you press it, the data stay in this browser.</p>
         <${TaskTold} name="fit" task=${task} />
       </div>
     <//>
     <${Convergence} points=${live ? points : (shown?.points ?? [])} open=${live} />
-    <div class=${`study-sheet fit-sheet ${state?.stale ? 'stale' : ''}`} id="fit-sheet" hidden=${!shown}>
+    <div class=${`study-sheet stack fit-sheet ${state?.stale ? 'stale' : ''}`} id="fit-sheet" hidden=${!shown}>
       ${
         shown &&
-        html`<div class="fit-head">
+        html`<div class="fit-head row">
           <${Judgement} ...${shown} />
-          <div class="fit-use">
+          <div class="fit-use row">
             ${state?.offered && html`<button type="button" id="fit-use" class="primary" onClick=${() => page.take(shown.fit.scene)}>Use these values</button>`}
             <p id="fit-used" role="status">${state?.words}</p>
           </div>
@@ -221,7 +221,7 @@ function Data({ file, fault, note, makeExample }) {
   const told = reading ? `${file.words}. ${file.about}` : file.words || NO_DATA;
   return html`<div class="fit-data">
     <p class="muted">Drop a CSV file anywhere on the page: t and any of θ, ẋ, ẏ, θ̇ and x just before each bounce, with units in the header, as in “t (ms)”.</p>
-    <p class="buttons">
+    <p class="row">
       <${FileButton} id="fit-load" field="fit-file" accept=".csv,.tsv,.txt,text/csv,text/tab-separated-values" taken=${(/** @type {File} */ one) => void file.take(one)}>Choose a file…<//>
       <button type="button" id="fit-example" onClick=${makeExample}>Make an example</button>
     </p>
@@ -341,7 +341,7 @@ function Measure({ letter, title, told, interval, of, beside, besideWords, room,
     <span class="fit-number">${valueWords(told)}</span>
     <div class="fit-bar">
       <${Scale} low=${low} high=${high} bars=${[[...interval, good ? 'interval' : 'caution']]} marks=${marks} />
-      <p class="fit-ends muted"><span>${of}: ${between(interval, told.unit)}</span><span><span class="scale-mark beside key" aria-hidden="true" /> ${besideWords}</span></p>
+      <p class="fit-ends muted row"><span>${of}: ${between(interval, told.unit)}</span><span><span class="scale-mark beside key" aria-hidden="true" /> ${besideWords}</span></p>
     </div>
     ${children}
   </li>`;

@@ -31,8 +31,8 @@ const spaced = (name) => name.replaceAll('_', ' ');
 export function LadderOf({ page }) {
   const { values, field } = useSettings(page, 'ladder', SETTINGS);
   const asked = useAnswer(requestOf('v1/ladder', page.query, values));
-  return html`<div class="study">
-    <div class="study-settings">${field('bounces')}${field('tolerance')}</div>
+  return html`<div class="study stack">
+    <div class="study-settings row">${field('bounces')}${field('tolerance')}</div>
     <${Answered} asked=${asked}>
       ${(/** @type {Ladder} */ answer) => html`<${Rungs} answer=${answer} path=${asked.of} fields=${page.fields} />`}
     <//>

@@ -273,13 +273,13 @@ export function StabilityMap({ page }) {
     </div>
     <output class="readout" id="map-readout" aria-live="off">${unbroken(read())}</output>
     <p class="unseen" id="map-spoken" role="status">${spoken}</p>
-    <p class="map-legend">${grid && html`<${Legend} grid=${grid} />`}</p>
+    <p class="map-legend row">${grid && html`<${Legend} grid=${grid} />`}</p>
     <details class="map-options" id="map-options">
       <summary>Axes, colours, numbers</summary>
       <${Form} kind="map-controls" ask=${ask}>
         ${controls}
         <div class="map-go">
-          <p class="buttons">
+          <p class="row">
             <button type="submit" id="map-compute" class=${['', 'answered'].includes(ended) ? '' : 'attention'}>Compute</button>
             <button type="button" id="map-cancel" disabled=${!active} onClick=${cancel}>Cancel</button>
             <button type="button" id="map-back" disabled=${views.current.length === 0} onClick=${back}>Back</button>

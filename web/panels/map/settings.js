@@ -242,7 +242,7 @@ function EndsOf({ name, title, page, map: { settings }, errors, turn }) {
       )}
     </select>
     <p class="error" id=${`${id}-error`} role="status">${fault}</p>
-    <p class="map-ends">
+    <p class="map-ends row">
       ${
         /** @type {const} */ (['from', 'to']).map(
           (end) => html`<label for=${`${id}-${end}`}>${end}</label>

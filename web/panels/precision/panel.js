@@ -67,7 +67,7 @@ export function SpeedAgainstAccuracy({ page }) {
   useEffect(() => {
     if (page.unattended) void ask();
   }, [page.unattended]);
-  return html`<div class="study">
+  return html`<div class="study stack">
     <${Form} ask=${ask}>
       ${field('bounces')}${field('axis')}
       <${TaskButtons} name="precision" task=${task} start="Measure" />

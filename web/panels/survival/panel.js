@@ -82,15 +82,15 @@ export function Survival({ page, open = true, told }) {
     return () => clearTimeout(timer);
   }, [path, open, shown]);
   const sheet = useMemo(() => shown && html`<${Sheet} shown=${shown} take=${page.take} />`, [shown, angles()]);
-  return html`<div class="study survival">
+  return html`<div class="study stack survival">
     <${Form} ask=${ask}>
       ${field('runs')}${field('bounces')}
       <p class="muted" id="survival-noise" hidden=${!own}>${words(own)}</p>
-      <div id="survival-offer" hidden=${Boolean(own)}><p class="muted">The scene has no noise; this one is tried.</p>${field('scene.noise.timing_sd')}${field('scene.noise.model')}</div>
+      <div class="row" id="survival-offer" hidden=${Boolean(own)}><p class="muted">The scene has no noise; this one is tried.</p>${field('scene.noise.timing_sd')}${field('scene.noise.model')}</div>
       <${TaskButtons} name="survival" task=${task} start="Run them all" quiet />
       <${TaskTold} name="survival" task=${task} />
     <//>
-    ${shown && html`<div class=${`study-sheet survival-sheet ${shown.path === path ? '' : 'stale'}`}>${sheet}</div>`}
+    ${shown && html`<div class=${`study-sheet stack survival-sheet ${shown.path === path ? '' : 'stale'}`}>${sheet}</div>`}
   </div>`;
 }
 

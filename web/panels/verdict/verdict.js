@@ -102,7 +102,7 @@ function Answer({ answer, scene }) {
       <p class="verdict-term">${brief(capitalized(headline.term))}</p>
     </div>
     <${Said} class="reason" text=${verdict.reason} />
-    <p class="chips">
+    <p class="chips row">
       <span class="chip">decided by ${DECIDERS[verdict.decided_by]}</span>
       ${agree === true && html`<span class="chip">linear map and fresh release agree</span>`}
       ${agree === false && html`<span class="chip caution">linear map and fresh release disagree</span>`}
