@@ -52,7 +52,7 @@ export function Figure({ path, label, over }) {
 }
 
 /** A value with its place in the paper, or in the answer. @param {string} value @param {string | undefined} where */
-const placed = (value, where) => html`${value}${where && html`<span class="where">${where}</span>`}`;
+const placed = (value, where) => html`${value}${where && html`<span class="note">${where}</span>`}`;
 
 /**
  * Printed values beside computed ones.

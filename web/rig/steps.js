@@ -342,10 +342,10 @@ function Limit({ rig, line }) {
   const { error, says, lost, has, told, own, known, short } = line;
   const act = short ? (known ? 'mend this' : 'check this') : 'fine';
   return html`<li class="limit" data-field=${error.field}>
-    <span class="limit-words">${says}<span class="muted lost">${lost}</span></span>
+    <span class="limit-words">${says}<span class="note">${lost}</span></span>
     <${Bar} line=${line} />
     <${Has} rig=${rig} field=${error.field} unit=${error.unit} has=${has} />
-    <span class=${`limit-act ${short ? 'short' : 'long'}`}>${act}${!told && html`<span class="muted"> ${own ? 'as in your values' : 'if usual'}</span>`}</span>
+    <span class=${`limit-act ${short ? 'short' : 'long'}`}>${act}${!told && html`<span class="note"> ${own ? 'as in your values' : 'if usual'}</span>`}</span>
   </li>`;
 }
 
@@ -490,7 +490,7 @@ function Law({ rig, name, scene, open, held }) {
   const [first] = limits?.budget?.errors && limited ? linesOf(limits.budget, rig.have) : [];
   const use = html`<button type="button" disabled=${!current} onClick=${() => rig.take(scene)} aria-label=${`Use it: ${name}`}>Use it</button>`;
   return html`<${Row} kind=${current ? '' : 'stale'} cells=${[
-    html`${name}<span class="muted law">${lawOf(scene)}</span>`,
+    html`${name}<span class="note">${lawOf(scene)}</span>`,
     answer ? html`<${Told} result=${verdictOf(answer)} />` : '–',
     ...(answer ? factsOf(answer) : ['–', '–', '–']),
     first && answer ? first.says : limited || !answer ? '–' : '…',

@@ -58,7 +58,7 @@ export function Branch({ page: { query } }) {
   const judged = verdict.current ? verdict.answer : null;
   const against = judged && reasonAgainst(judged);
   const asked = useAnswer(judged && !against ? branchOf(query, judged) : null, { quiet_ms: 0, ask: pictured });
-  return html`<div class="study stack branch" ref=${place}>
+  return html`<div class="study stack" ref=${place}>
     ${
       against
         ? html`<p class="muted" role="status">${against}</p>`
@@ -97,7 +97,7 @@ const readBranch = readCurves(
 /** @param {Change} change */
 const rowOf = ({ kind, value, theta, residue, detail }) =>
   html`<${Row}
-    cells=${[[kind.replaceAll('_', ' '), html`<span class="muted">${brief(detail)}</span>`], number(value, 5), number(shownValue(tiny(theta), 'rad')), residue === null ? '–' : number(tiny(residue), 3)]}
+    cells=${[[kind.replaceAll('_', ' '), html`<span class="note">${brief(detail)}</span>`], number(value, 5), number(shownValue(tiny(theta), 'rad')), residue === null ? '–' : number(tiny(residue), 3)]}
   />`;
 
 /** Zero for a value that is rounding. @param {number} value */

@@ -53,7 +53,7 @@ function Rungs({ answer: { rungs, enough, reason }, path, fields }) {
 function cellsOf({ name, forced, outcome, change, needed, reason, cost_ns_per_bounce: cost }, enough, title) {
   const state = change?.state;
   const most = state?.difference == null ? '–' : quantity(state.difference, 'm/s', 3);
-  const note = (/** @type {unknown} */ said) => html`<span class="muted">${said}</span>`;
+  const note = (/** @type {unknown} */ said) => html`<span class="note">${said}</span>`;
   return [
     html`${spaced(name)}${name === enough && html` <span class="chip">enough</span>`}`,
     forced ? html`${title(forced.field)}${note(words(forced.detail.replace(/\s+/g, ' ')))}` : '–',

@@ -106,13 +106,13 @@ function Sheet({ shown: { answer, pictures, request }, axis, stale }) {
     axis === 'steps'
       ? 'Steps of different methods are different work, so there is no front.'
       : 'Nothing lies below and left of the front.';
-  return html`<div class=${`precision-sheet ${stale ? 'stale' : ''}`}>
+  return html`<div class=${`study-sheet stack precision-sheet ${stale ? 'stale' : ''}`}>
     <${Picture} name="precision" figure=${figure} read=${read}
       label=${`Speed against accuracy: error over ${AXES[axis].toLowerCase()}, ${drawn.length} points`}
       hint=${`${front} The dotted line is the rounding of one number. With keys: left and right go from point to point, up and down from method to method.`} />
     <${Folded} title="Methods">
       <ul class="methods" aria-label="Methods">
-        ${methods.map(({ name, title: said, about }) => html`<li><span ref=${(/** @type {HTMLElement | null} */ place) => place?.replaceChildren(symbol(name))} /><span>${said}<span class="muted">${words([about, missing(name)].filter(Boolean).join('; '))}</span></span></li>`)}
+        ${methods.map(({ name, title: said, about }) => html`<li><span ref=${(/** @type {HTMLElement | null} */ place) => place?.replaceChildren(symbol(name))} /><span>${said}<span class="note">${words([about, missing(name)].filter(Boolean).join('; '))}</span></span></li>`)}
       </ul>
     <//>
     <${Folded} title="Numbers">
