@@ -32,8 +32,6 @@ export class ScenePage extends Parts {
   chosen = null;
   /** False while some of what is typed is no value. */
   complete = true;
-  /** Nobody is there to press a button. */
-  unattended = false;
   fields;
   cases;
   #path;

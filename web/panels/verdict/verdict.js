@@ -7,6 +7,7 @@ import { number, quantity } from '../../dom/numbers.js';
 import { capitalized } from '../../dom/typeset.js';
 import { UNITS, angles } from '../../dom/units.js';
 import { html, render, useState } from '../../vendor/preact/preact.js';
+import { useTask } from '../ask.js';
 import { Headline, Numbers, Spoken, brief, sign } from '../parts.js';
 import { endedAs, plainly, toneOf } from './words.js';
 
@@ -185,17 +186,13 @@ function gist({ rotation_number: rotation, chaos, predictable_bounces: predictab
 /** How far the body may be released aside, once somebody asks. @param {{scene: string}} props */
 function Basin({ scene }) {
   const [measured, take] = useState(/** @type {Stability | null} */ (null));
-  const [told, tell] = useState({ words: 'How far aside may it be released?', busy: false });
-  const ask = async () => {
-    tell({ words: 'Trying some 400 release angles…', busy: true });
-    try {
-      take(await get(`v1/stability?${scene}&basin=true`));
-    } catch (error) {
-      tell({ words: error instanceof Problem ? error.message : 'The server did not answer.', busy: false });
-    }
-  };
+  const task = useTask('Trying some 400 release angles', '');
+  const failed = (/** @type {unknown} */ error) =>
+    error instanceof Problem ? error.message : 'The server did not answer.';
+  const ask = async () => take(await task.run((signal) => get(`v1/stability?${scene}&basin=true`, signal), failed));
   if (measured) return html`${brief(basinSentence(measured))}`;
-  return html`${told.words} ${!told.busy && html`<button type="button" id="basin" onClick=${ask}>Measure it</button>`}`;
+  const told = task.words || 'How far aside may it be released?';
+  return html`${told} ${!task.active && html`<button type="button" id="basin" onClick=${ask}>Measure it</button>`}`;
 }
 
 /** @param {{answer: Stability, scene: string}} props */
