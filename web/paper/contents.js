@@ -187,14 +187,8 @@ function Scan({ image, place, laid: { over, opacity, x, y, size }, move }) {
  * A part with its ways on: its run, and the request for it.
  * @param {{id: string, title: string, heading?: unknown, run: string, ask?: string, children: unknown}} props
  */
-const Article = ({
-  id,
-  title,
-  heading,
-  run,
-  ask,
-  children,
-}) => html`<article class="stack" id=${id} aria-labelledby=${`${id}-title`}>
+const Article = ({ id, title, heading, run, ask, children }) => html`<article class="stack" id=${id}
+  aria-labelledby=${`${id}-title`}>
   <h3 class="row" id=${`${id}-title`}>${heading ?? words(title)}</h3>
   ${children}
   <p class="actions">
