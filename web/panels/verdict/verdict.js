@@ -47,23 +47,28 @@ function VerdictLine({ shown, held, played, ended, facts }) {
 export function bringVerdict(root, more) {
   /** @type {State} */
   let state = { shown: null, busy: false, ended: null, played: null, held: null, facts: [] };
-  const draw = () => {
+  const drawLine = () => {
     root.setAttribute('aria-busy', String(state.busy));
     render(html`<${VerdictLine} ...${state} />`, root);
     // The evidence of the last verdict is out of sight until there is another.
     more.hidden = state.held !== null;
+  };
+  const drawEvidence = () => {
     if (state.shown) render(html`<${Answer} ...${state.shown} />`, more);
   };
   root.replaceChildren();
-  draw();
-  document.addEventListener(UNITS, draw);
+  drawLine();
+  document.addEventListener(UNITS, drawLine);
+  document.addEventListener(UNITS, drawEvidence);
   return {
     /** @param {Partial<State>} changes */
     tell: (changes) => {
       const before = state;
       state = { ...before, ...changes };
       // It is called at each bounce, and at each turn of a knob.
-      if (/** @type {(keyof State)[]} */ (Object.keys(changes)).some((name) => state[name] !== before[name])) draw();
+      if (/** @type {(keyof State)[]} */ (Object.keys(changes)).some((name) => state[name] !== before[name]))
+        drawLine();
+      if (state.shown !== before.shown) drawEvidence();
     },
   };
 }
