@@ -102,6 +102,7 @@ async function showThisRun(page) {
   const caught = Object.keys(run.interventions.at(-1)?.guide ?? {}).some((name) => name.startsWith('catch.'));
   const isHeld = run.active && run.holds !== null && caught;
   const isTold = run.phase === 'ended' && (run.fate === 'fell' || run.fate === 'kept');
+  /** @type {Result} */
   const held = isHeld ? { tone: 'kept', words: 'Caught: held on the table' } : null;
   page.verdict?.tell({ ended: isTold ? { tone: run.fate, words: fact } : held });
 }
