@@ -33,10 +33,11 @@ const WIDENED: f64 = 4.0;
 const STILL_GROWS: f64 = 1.5;
 
 /// Part of a deviation that grows to first order, in parts of the bounce speed, up to which a run stays beside it; one that begins so far off follows.
-const SMALL_GROWING: f64 = 1e-3;
+pub const SMALL_GROWING: f64 = 1e-3;
 
-/// Share of the bounce speed up to which a body that still bounces is at rest.
+/// Share of the bounce speed up to which a body that still bounces is at rest, over the last of so many parts of a run.
 const AT_REST: f64 = 1e-3;
+const LAST: u64 = 100;
 
 /// Bounces of that run. Chaotic swings that stay bounded for a while have left by then.
 pub const SMALL_RUN: u64 = 20_000;
@@ -69,8 +70,10 @@ pub struct SmallRun {
     pub is_own: bool,
     /// Bounces that it went on for.
     pub impacts: u64,
-    /// True if it went on for all bounces asked for.
+    /// True if it went on for all bounces asked for, and still bounces.
     pub survived: bool,
+    /// True if it went on for all of them, and has come to rest.
+    pub rests: bool,
     /// Largest |θ| over the first and over the second half of the bounces asked for, rad.
     pub halves: [f64; 2],
     /// The same of the part of the deviation that grows to first order, in parts of the bounce speed; 0 where none does.
@@ -547,16 +550,19 @@ fn followed(
     go_on: &mut impl FnMut() -> bool,
 ) -> Option<SmallRun> {
     let period = part.map_or(1, |part| part.bounce.map.period);
-    let (mut halves, mut growing, mut fastest) = ([0.0_f64; 2], [0.0_f64; 2], [0.0_f64; 2]);
+    let (mut halves, mut growing, mut last_speed) = ([0.0_f64; 2], [0.0_f64; 2], 0.0_f64);
     let ending = run(orbit, most, |contact| {
         let half = usize::from(contact.n > most / 2);
         halves[half] = halves[half].max(contact.state.theta.abs());
-        fastest[half] = fastest[half].max(contact.state.y_dot.abs());
+        if contact.n + most / LAST > most {
+            last_speed = last_speed.max(contact.state.y_dot.abs());
+        }
         if let Some(part) = part.filter(|_| (contact.n - 1).is_multiple_of(period)) {
             growing[half] = growing[half].max(part.size(&contact.state, contact.x));
         }
         !contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
     })?;
-    let survived = ending == Ending::Completed && (most < 2 || fastest[1] > AT_REST * small.fixed_point.speed);
-    Some(SmallRun { impacts: orbit.contacts(), is_own, survived, halves, growing })
+    let is_over = ending != Ending::Completed;
+    let rests = !is_over && most >= LAST && last_speed <= AT_REST * small.fixed_point.speed;
+    Some(SmallRun { impacts: orbit.contacts(), is_own, survived: !is_over && !rests, rests, halves, growing })
 }

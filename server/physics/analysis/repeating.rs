@@ -201,12 +201,13 @@ impl SceneMap {
         })
     }
 
-    /// The bounce to which its run settles, if it does.
+    /// The bounce to which its run settles, if it does and still bounces.
     pub(super) fn settled(&self) -> Option<RepeatingBounce> {
         let Self { map, reference, guess } = self;
         let orbit = Orbit::at(map.body, Rules::BARE_MAP, map.state(reference)).moved(reference[X]);
         let here = settled(map, orbit, &RepeatingBounce::bare(map, *guess, DMatrix::zeros(0, 0)))?;
-        find_planned(map, &here, &here).ok()
+        let bounces = |at: &Vector| map.flight_time(at) > AT_REST * map.flight_time(guess);
+        find_planned(map, &here, &here).ok().filter(|found| bounces(&found.at))
     }
 }
 

@@ -98,7 +98,7 @@ fn choose(
     let taken = tried.iter().position(|catch| catch.outcome.is_caught()).unwrap_or(0);
     let candidate = |(index, catch): (usize, &Catch)| {
         let Catch { approach, demand, contact_from, outcome, .. } = *catch;
-        Candidate { approach, demand, contact_from, outcome, taken: index == taken }
+        Candidate { approach, demand, contact_from, end: catch.end(), outcome, taken: index == taken }
     };
     let candidates = tried.iter().enumerate().map(candidate).collect();
     Ok(Catch { candidates, ..tried.swap_remove(taken) })

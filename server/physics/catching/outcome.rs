@@ -205,6 +205,8 @@ pub struct Candidate {
     pub demand: CatchDemand,
     /// Beginning of its lasting contact, s.
     pub contact_from: Option<f64>,
+    /// Its end, s.
+    pub end: f64,
     /// Outcome. One that is not caught rules the strategy out.
     pub outcome: CatchOutcome,
     /// True for the one that was taken.
@@ -236,6 +238,14 @@ pub struct Catch {
     pub notes: Vec<CatchNote>,
     /// Outcome.
     pub outcome: CatchOutcome,
+}
+
+impl Catch {
+    /// Time of its end, s: of the lasting contact, else of the last strike.
+    pub fn end(&self) -> f64 {
+        let struck = || self.strikes.last().map(|last| last.t);
+        self.hold.as_ref().map(|hold| hold.t_end).or_else(struck).unwrap_or(0.0)
+    }
 }
 
 /// Reason for which there is no catch to tell of.

@@ -25,6 +25,9 @@ const SAME_SHIFT: f64 = 1e-10;
 /// Standard deviations to begin with, where none are given.
 const FIRST_SD: Vector = [5e-3, 2e-2, 2e-2, 0.1, 2e-3, 2e-3];
 
+/// Largest ratio of two misfits that are the same: searches end at a hundredth of the sum of squares.
+const NO_DEARER: f64 = 1.01;
+
 /// Least standard deviation: exact data have no other.
 const LEAST_SD: f64 = 1e-10;
 /// Rows of the part of the data on which several starts are tried.
@@ -272,14 +275,14 @@ impl Search<'_> {
     fn first_stage(&mut self, map: &mut ImpactMap, notes: &mut Vec<String>) -> Result<Point, FitFailure> {
         let (rows, found) = renumber(&self.problem.rows, map);
         if !found.is_empty() && rows.len() >= 2 {
-            // The change has to pay: the same squares with the numbers as they came are larger.
+            // The change must not cost: the same squares with the numbers as they came are larger, or as large where no short window has the gap in it.
             let changed = Problem { rows, ..self.problem.clone() };
             let mut misfits = [f64::INFINITY; 2];
             for (misfit, problem) in misfits.iter_mut().zip([self.problem.clone(), changed.clone()]) {
                 let tried = self.tried(problem, self.typed.clone())?;
                 *misfit = tried.map_or(*misfit, |tried| tried.0);
             }
-            if misfits[1] < misfits[0] {
+            if misfits[1] <= misfits[0] * NO_DEARER {
                 self.problem = changed;
                 notes.extend(found);
             }

@@ -208,18 +208,10 @@ impl CatchAnswer {
         let caught = catch(scene, &options.settings, None, go_on).map_err(|why| refusal(scene, why))?;
         let friction = scene.number(Name::Friction).unwrap_or(0.0);
         let samples = caught.hold.as_ref().map_or(&[][..], |hold| &hold.samples);
-        let end =
-            caught.hold.as_ref().map(|hold| hold.t_end).or(caught.strikes.last().map(|last| last.t)).unwrap_or(0.0);
-        let ends = |contact_from: Option<f64>| contact_from.map_or(end, |t| t + options.settings.hold);
         let candidate = |candidate: &Candidate| CatchCandidate {
             approach: candidate.approach.into(),
             taken: candidate.taken,
-            outcome: CatchOutcomeAnswer::new(
-                &candidate.outcome,
-                candidate.contact_from,
-                ends(candidate.contact_from),
-                friction,
-            ),
+            outcome: CatchOutcomeAnswer::new(&candidate.outcome, candidate.contact_from, candidate.end, friction),
             contact_from: candidate.contact_from,
             demand: candidate.demand.into(),
         };
@@ -237,7 +229,7 @@ impl CatchAnswer {
             },
             strategy: CatchReason { name: caught.approach.strategy().name(), reason: reason(&caught) },
             candidates: caught.candidates.iter().map(candidate).collect(),
-            outcome: CatchOutcomeAnswer::new(&caught.outcome, caught.contact_from, end, friction),
+            outcome: CatchOutcomeAnswer::new(&caught.outcome, caught.contact_from, caught.end(), friction),
             strikes: table_of(&of_strikes(), &caught.strikes),
             hold: table_of(&OF_HOLD, &thinned(samples, options.hold_samples)),
             facts: CatchFacts {

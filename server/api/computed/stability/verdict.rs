@@ -7,7 +7,7 @@ use equipoise_physics::analysis::contact_regime::{
     ContactRegime, contact_regime, stick_cone, sticking_polynomial_at_one,
 };
 use equipoise_physics::analysis::evidence::{
-    Balance, Course, Evidence, Judgement, NOISY_IMPACTS, NOISY_RUNS, SMALL_SWING, SmallRun, Swing,
+    Balance, Course, Evidence, Judgement, NOISY_IMPACTS, NOISY_RUNS, SMALL_GROWING, SMALL_SWING, SmallRun, Swing,
 };
 use equipoise_physics::analysis::fixed_point::FixedPoint;
 use equipoise_physics::analysis::linear_verdict::{AngleClass, PARABOLIC};
@@ -330,8 +330,16 @@ fn beyond(scene: &Scene, balance: &Balance) -> String {
 
 fn balanced(scene: &Scene, balance: &Balance, run: &NonlinearRun) -> String {
     let small = |small: &SmallRun| {
-        let end = if small.survived { "stayed" } else { "left" };
-        let start = if small.is_own { "this release".to_owned() } else { format!("a swing of {SMALL_SWING} rad") };
+        let end = match (small.survived, small.rests) {
+            (true, _) => "stayed",
+            (false, true) => "came to rest",
+            (false, false) => "left",
+        };
+        let start = match (small.is_own, small.growing) {
+            (true, _) => "this release".to_owned(),
+            (false, [0.0, 0.0]) => format!("a swing of {SMALL_SWING} rad"),
+            (false, _) => format!("a deviation of {SMALL_GROWING} of the bounce speed"),
+        };
         let still = if small.survived && balance.grows_on() { ", and it still grew" } else { "" };
         format!("a run from {start} {end}, {} bounces and |θ| up to {} rad{still}", small.impacts, small.max_theta())
     };
