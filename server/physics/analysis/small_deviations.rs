@@ -126,10 +126,12 @@ pub(super) fn settled_bounce(
 ) -> Result<(RepeatingBounce, Vector), NoRepeatingBounce> {
     let SceneMap { map: own, mut reference, .. } = *of_scene;
     let mut bounce = of_scene.find()?;
-    if let Motion::Grows(_) = motion(&bounce.eigenvalues)
+    let leaves_height =
+        bounce.map.place_of(Y_DOT).is_some_and(|fall| bounce.matrix[(fall, fall)].abs() > 1.0 + ON_CIRCLE);
+    if leaves_height
         && let Some(settled) = of_scene.settled().filter(|settled| motion(&settled.eigenvalues) == Motion::DiesOut)
     {
-        // The table has several bounces, and this one draws the run to it.
+        // The table has several bounces, and another one draws the run to it.
         (reference, bounce) = (settled.at, settled);
     }
     // A run that settles has the drift and the energy on which it does.
