@@ -13,7 +13,7 @@ import { sentence, sign, useChanges, words } from '../panels/parts.js';
 import { Cases } from '../panels/scene-page.js';
 import { ERRORS, GAINS, linesOf, rangeWords, thingOf, typedUnit } from '../panels/verdict/facts.js';
 import { numbersOf } from '../panels/verdict/verdict.js';
-import { rangeOf, verdictOf } from '../panels/verdict/words.js';
+import { plainly, rangeOf, verdictOf } from '../panels/verdict/words.js';
 import { contactDistance, derivedOf, drawable } from '../physics/body.js';
 import { drawSymbols } from '../scene/symbols.js';
 import { World } from '../scene/world.js';
@@ -274,7 +274,7 @@ function Verdict({ rig, verdict: { answer, problem, lost, current }, result }) {
       html`${gains.map((gain) => html`<${Range} key=${gain[0]} answer=${answer} gain=${gain} />`)}
       ${falls && html`<${Others} rig=${rig} />`}
       <${Folded} title="Why, and numbers">
-        <p>${sentence(answer.verdict.reason)}</p>
+        <p>${sentence(plainly(answer.verdict.reason))}</p>
         <${Numbers} rows=${numbersOf(answer)} />
         ${answer.notes.map((note) => html`<p class="muted">${sentence(note)}</p>`)}
       <//>`
@@ -374,7 +374,7 @@ const Unlimited = ({ rig }) => html`<p class="muted">Tell already what your rig 
 /** @param {{budget: Budget, rig: Rig}} props */
 function Whole({ budget, rig }) {
   const { errors, together, present, bounces, reason } = budget;
-  if (!errors) return html`<p>${sentence(reason ?? '')}</p><${Unlimited} rig=${rig} />`;
+  if (!errors) return html`<p>${sentence(plainly(reason ?? ''))}</p><${Unlimited} rig=${rig} />`;
   const lines = linesOf(budget, rig.have);
   const rest = lines.slice(WORST);
   const others = errors.filter(({ field }) => !lines.some(({ error }) => error.field === field));
@@ -396,7 +396,7 @@ function Whole({ budget, rig }) {
       others.length > 0 &&
       html`<${Folded} title=${`${others.length} without a limit here`}>
         ${free.length > 0 && html`<p>Of any size that was tried: ${free.join(', ')}.</p>`}
-        ${none.map(({ field, reason: why }) => html`<p>${capitalized(thingOf(field).what)}: ${sentence(why ?? '')}</p>`)}
+        ${none.map(({ field, reason: why }) => html`<p>${capitalized(thingOf(field).what)}: ${sentence(plainly(why ?? ''))}</p>`)}
       <//>`
     }
     <${Folded} title="Numbers">

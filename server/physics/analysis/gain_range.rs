@@ -93,7 +93,9 @@ impl ByGain {
 
     /// The range of gains above `least` that contains the own one or is next to it; `None` if eigenvalues do not converge.
     pub(crate) fn stable(&self, gain: f64, least: f64) -> Option<StableGains> {
-        let mut ends: Vec<f64> = self.crossings()?.into_iter().map(|away| gain + away).collect();
+        // A difference that is rounding is 0.
+        let end = |away: f64| if (gain + away).abs() <= 4.0 * f64::EPSILON * gain.abs() { 0.0 } else { gain + away };
+        let mut ends: Vec<f64> = self.crossings()?.into_iter().map(end).collect();
         ends.retain(|end| end.is_finite() && *end > least);
         ends.extend([least, f64::INFINITY]);
         ends.sort_by(f64::total_cmp);

@@ -26,7 +26,7 @@ export function endedAs(kind, impacts) {
 export const plainly = (text) =>
   text
     .replace(
-      /\b(?:this|the) run ended as `(\w+)` at contact (\d+)/g,
+      /\b(?:this|the) run end(?:ed|s) as `(\w+)` at contact (\d+)/g,
       (_, kind, n) => `a fresh release ${endedAs(kind, Number(n))} (${reasonOf(kind)})`,
     )
     .replace(/\b(?:this|the) run\b/g, 'a fresh release');
