@@ -328,7 +328,8 @@ impl ControllerAnswer {
             let (way, course) =
                 if change > 0.0 { ("loses", "is lost after") } else { ("gains", "has twice its speed after") };
             notes.push(format!(
-                "no bounce repeats: each one changes y_dot by {change} m/s. The law and its margins are about the upright bounce of {} m/s, which {way}                  height and {course} about {} bounces at this rate (energy_gain would hold it)",
+                "no bounce repeats: each one changes y_dot by {change} m/s. The law and its margins are about the upright bounce of {} m/s, which \
+                 {way} height and {course} about {} bounces at this rate (energy_gain would hold it)",
                 self.fixed_point.bounce.y_dot.abs(),
                 (self.fixed_point.bounce.y_dot / change).abs().ceil()
             ));
