@@ -32,9 +32,7 @@ pub fn searched_gains(scene: &Scene) -> u64 {
     if is_plain(&scene.with_tilt_law()) || scene.has_noise() {
         return 0;
     }
-    let is_plain = is_plain(&scene.with_tilt_law());
-    let believes = scene.assumed_restitution() == model.rod.restitution;
-    u64::from(!model.is_point && !is_plain) + u64::from(has_energy_gain(&model) && !(is_plain && believes))
+    u64::from(!model.is_point) + u64::from(has_energy_gain(&model))
 }
 
 /// Tells whether the law of the energy has a gain.

@@ -205,7 +205,7 @@ pub struct Candidate {
     pub demand: CatchDemand,
     /// Beginning of its lasting contact, s.
     pub contact_from: Option<f64>,
-    /// Its end, s.
+    /// End of the catch, s: [`Catch::end`].
     pub end: f64,
     /// Outcome. One that is not caught rules the strategy out.
     pub outcome: CatchOutcome,

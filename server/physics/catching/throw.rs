@@ -2,8 +2,8 @@
 //!
 //! Without friction the tilt and the speed of the table follow in closed form. With friction a search finds them on the exact strike: for
 //! each tilt, one speed of the table gives the vertical velocity ẏ⁺, and the tilts are looked through from level to both sides until the
-//! spin θ̇⁺ changes sides of the wanted one, so that of several tilts the least is found. Either way the throw that is returned is the exact strike and the exact flight of that table, with what
-//! they miss of the target.
+//! spin θ̇⁺ changes sides of the wanted one, so that of several tilts the least is found. Either way the throw that is returned is the exact
+//! strike and the exact flight of that table, with what they miss of the target.
 
 use crate::analysis::root::root;
 use crate::catching::aim::{Aim, rise_before};

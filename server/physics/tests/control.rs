@@ -417,7 +417,7 @@ fn predicted_eigenvalues_are_those_of_the_map_of_any_rig() {
                 // Those near each other move by roots of the rounding.
                 assert!(beside <= 1e-6, "{:?}: {beside}", mix.features);
                 rounded += u32::from(beside > 1e-9);
-                // Where the height goes, the law soon is that of another bounce.
+                // A law for a height that is lost soon is that of another bounce.
                 match controller.sinks {
                     None => decays(&controller, &mix.features),
                     Some(_) => sinking += 1,
